@@ -8,13 +8,13 @@ from time import perf_counter
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import NamedFormula, named_formula, related_formula
 from symrot.checker.claim.values import decide_value
-from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
+from symrot.checker.decide.ranges import condition_texts
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
-from symrot.exact.printing import as_text
 
 __all__ = ["MOST_SECONDS", "check_claim", "check_readings", "unfinished", "verdict_of_decision"]
 
@@ -119,7 +119,10 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
     with _place_of(claim):
-        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
+        if claim.relation is None:
+            decision = decide_value(claim)
+        else:
+            decision = for_positive_bases(decide_equation(claim.equation), claim.equation)
     return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
 
 
@@ -145,8 +148,11 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     """Return the verdict with a diagnosis: the probable fault, or the side that is not defined everywhere."""
-    if claim.relation is None:
+    if claim.relation is None or is_large(claim.equation):
         return verdict
+    if any(requirement.code == "positive_base" for requirement in decision.requires):
+        text = f"a power with letters in its exponent is read for a positive base: {verdict.requires[0]}"
+        return replace(verdict, diagnosis=Diagnosis("positive_base", text))
     if decision.verdict not in ("false", "conditional"):
         return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
@@ -167,7 +173,7 @@ def _domain(claim: Claim) -> Diagnosis:
     if bool(left) == bool(right):
         return Diagnosis("none", "")
     narrow, wide = ("left", "right") if left else ("right", "left")
-    where = ", ".join(map(as_text, left or right))
+    where = ", ".join(condition_texts(left or right))
     text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
     return Diagnosis("domain", text)
 
@@ -175,7 +181,7 @@ def _domain(claim: Claim) -> Diagnosis:
 def verdict_of_decision(decision: Decision, text: str, start: float) -> Verdict:
     return Verdict(
         verdict=decision.verdict,
-        conditions=tuple(map(as_text, decision.conditions)),
+        conditions=condition_texts(decision.conditions),
         requires=tuple(requirement.text for requirement in decision.requires),
         counterexample=decision.counterexample,
         reason=decision.reason,

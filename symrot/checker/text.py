@@ -7,17 +7,19 @@ one by one; a line that gives a name to a formula defines the name for the lines
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, notation_of
-from symrot.checker.claim.reader import Reading, readings_of
+from symrot.checker.claim.reader import Reading, Relation, read_relation, readings_of
 from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import text as text_of
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.marks import changed_spans
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
-from symrot.checker.verdict import Verdict
+from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
 __all__ = ["verdict_on_reading", "verdict_on_text"]
@@ -118,8 +120,50 @@ def _differs(echo: str, source: str) -> bool:
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = with_rounding(claim, check_claim(claim, repair))
-    repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
-    return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+    repairs = tuple(_marked(repair, claim, notation) for repair in verdict.repairs)
+    requires, conditions = (
+        tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
+    )
+    notes = (*claim.notes, *verdict.notes)
+    return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
+    """Return a repair in the notation of the claim, with the pieces that differ from the claim."""
+    text = notation.rewritten(repair.text)
+    if claim.relation is None:
+        return replace(repair, text=text)
+    changed = changed_spans(notation.rewritten(relation_text(claim.relation)), text)
+    return replace(repair, text=text, changed=changed, entry=_entry_changed(claim.relation, repair.text))
+
+
+def _entry_changed(relation: Relation, repaired: str) -> tuple[int, int] | None:
+    """Return the only entry of a matrix in which a repaired equation differs from an equation, or None."""
+    try:
+        other = read_relation(repaired.partition(" with ")[0])
+    except InputError:
+        return None
+    entries: list[tuple[int, int]] = []
+    for old, new in zip(relation[1:], other[1:], strict=True):
+        if text_of(old) == text_of(new):
+            continue
+        before, after = _rows(old), _rows(new)
+        if before is None or after is None or [len(row) for row in before] != [len(row) for row in after]:
+            return None
+        entries += [
+            (n + 1, m + 1)
+            for n, pair in enumerate(zip(before, after, strict=True))
+            for m, cells in enumerate(zip(*pair, strict=True))
+            if text_of(cells[0]) != text_of(cells[1])
+        ]
+    return entries[0] if len(entries) == 1 else None
+
+
+def _rows(side: Node) -> list[tuple[Node, ...]] | None:
+    """Return the rows of a matrix that is written with its entries, or None."""
+    if side.kind != "call" or side.value != "Matrix" or side.args[0].kind != "list":
+        return None
+    return [row.args if row.kind == "list" else (row,) for row in side.args[0].args]
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:

@@ -135,7 +135,7 @@ def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> 
     InputError
         For a proposal that changes a part which is not printed, or that the exact engine does not prove.
     """
-    changes = proposal or (verdict.repairs[0].changes if verdict.repairs else {})
+    changes = proposal or (verdict.repairs[0].edited if verdict.repairs else {})
     names = {*claim.symbols, *(name for name, _ in claim.define)}
     trees = {}
     for place, source in changes.items():

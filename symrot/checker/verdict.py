@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from symrot.checker.marks import html_with_marks, latex_with_marks
 from symrot.exact.evidence import Counterexample
 
 __all__ = ["Diagnosis", "Dimensions", "Identification", "Repair", "Verdict"]
@@ -45,8 +46,12 @@ class Repair:
         The smaller, the nearer to the claim.
     proven : bool
         Whether the exact engine proved it.
-    changes : dict of str to str
+    edited : dict of str to str
         The changed parts of the claim, ``"left"``, ``"right"`` or the name of a definition, with their new text.
+    changed : tuple of (int, int)
+        Start and end of each piece of the text that differs from the claim.
+    entry : (int, int) or None
+        Row and column, from 1, of the only entry that differs, if a side is a matrix.
 
     Examples
     --------
@@ -54,13 +59,32 @@ class Repair:
     >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     >>> verdict.repairs[0].text
     'sin(2*x) == 2*sin(x)*cos(x)'
+    >>> verdict.repairs[0].html
+    'sin(2*x) == <mark>2*</mark>sin(x)*cos(x)'
     """
 
     text: str
     code: str
     cost: float
     proven: bool = True
-    changes: dict[str, str] = field(default_factory=dict)
+    edited: dict[str, str] = field(default_factory=dict)
+    changed: tuple[tuple[int, int], ...] = ()
+    entry: tuple[int, int] | None = None
+
+    @property
+    def html(self) -> str:
+        """The text as HTML, with the pieces that differ from the claim in ``<mark>``."""
+        return html_with_marks(self.text, self.changed)
+
+    @property
+    def latex(self) -> str:
+        """The text of a repair in LaTeX, with the pieces that differ from the claim underlined."""
+        return latex_with_marks(self.text, self.changed)
+
+    @property
+    def note(self) -> str:
+        """The code of the fault in brackets, and the entry of a matrix that differs."""
+        return f"[{self.code}, entry {self.entry}]" if self.entry else f"[{self.code}]"
 
 
 @dataclass(frozen=True)
@@ -218,7 +242,7 @@ class Verdict:
             ("units", self.dimension.text),
             *(("note", note) for note in self.notes),
             ("diagnosis", f"{self.diagnosis.text} [{self.diagnosis.code}]" if wrong else ""),
-            *(("instead" if near else "true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
+            *(("instead" if near else "true instead", f"{repair.text}  {repair.note}") for repair in self.repairs),
         ]
         return [(name, text) for name, text in rows if text]
 
@@ -236,7 +260,11 @@ class Verdict:
             },
             "diagnosis": {"code": self.diagnosis.code, "text": self.diagnosis.text},
             "repairs": [
-                {"text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven} for r in self.repairs
+                {
+                    "text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven,
+                    "changed": [list(span) for span in r.changed], "entry": list(r.entry) if r.entry else None,
+                }
+                for r in self.repairs
             ],
             "seconds": round(self.seconds, 4),
             "where": self.where,

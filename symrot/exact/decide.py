@@ -24,6 +24,7 @@ from symrot.exact.decision import (
     Case,
     Decision,
     Shape,
+    arguments,
     congruence,
     first_decision,
     flatten,
@@ -179,7 +180,7 @@ def leave_open(case: _FormulaCase) -> Decision:
     return Decision("undecided", case.conditions, stopped_by=stopped_by)
 
 
-STAGES = (subtract, normalise, prove, witness, refute, congruence, leave_open)
+STAGES = (subtract, normalise, prove, witness, refute, arguments, congruence, leave_open)
 
 
 def _shaped(entries: list[Expr], shape: Shape) -> Any:

@@ -19,12 +19,13 @@ from symrot.exact.congruence_closure import proof_by_congruence
 from symrot.exact.evidence import Counterexample, Requirement
 from symrot.exact.intervals import enclosure
 from symrot.exact.inverse_sums import proof
-from symrot.exact.ring.ratio import Ratio
+from symrot.exact.plain_arguments import proof_by_arguments
+from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = [
-    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "congruence", "first_decision", "flatten", "matched_sides",
-    "place_in_matrix", "prove", "refute", "shape_text", "subtract",
+    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "arguments", "congruence", "first_decision", "flatten",
+    "matched_sides", "place_in_matrix", "prove", "refute", "shape_text", "subtract",
 ]  # fmt: skip
 
 MOST_SEARCHED = 4
@@ -152,8 +153,6 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
     """Pass an equation (``case``) through stages of decision; return the decision of the first stage that decides.
 
     The last stage always decides.
-
-    The last stage always decides.
     """
     for stage in stages:
         decision = stage(case)
@@ -187,6 +186,22 @@ def refute(case: Case) -> Decision | None:
     if case.counterexample is None:
         return None
     return Decision("false", case.conditions, counterexample=case.counterexample)
+
+
+def arguments(case: Case) -> Decision | None:
+    """Decide an equation whose open entries become equal if arguments of functions are shortened; else return None."""
+    ring = case.ring
+    try:
+        proofs = [
+            proof_by_arguments(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven
+        ]
+    except TooLarge:
+        return None
+    if None in proofs:
+        return None
+    case.unproven = []
+    case.rely_on((*case.proof_rings, *(ring for rings in proofs if rings for ring in rings)))
+    return case.confirmed()
 
 
 def congruence(case: Case) -> Decision | None:

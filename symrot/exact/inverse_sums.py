@@ -22,6 +22,7 @@ from symrot.exact.angles.inverse import INVERSE, range_of
 from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
+from symrot.exact.sign_cases import vanishes_for_all_signs
 
 __all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
@@ -52,6 +53,8 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     """
     numerator = ring.reduce(numerator)
     if not numerator:
+        return ()
+    if vanishes_for_all_signs(ring, numerator):
         return ()
     for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
@@ -105,8 +108,8 @@ class PrincipalValueProof:
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
     """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
 
-    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for
-    acos. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
+    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
+    between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
@@ -128,7 +131,9 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
-                return PrincipalValueProof((angle - least, most - angle), (), (other, *further))
+                ends = (angle - least, most - angle)
+                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+                return PrincipalValueProof(edge, inside, (other, *further))
     return None
 
 

@@ -5,11 +5,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from textwrap import wrap
 
-from symrot.checker.verdict import Verdict
+from symrot.checker.marks import carets
+from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 from symrot.report.layout import duration, one_line, room
 
 __all__ = ["check", "lines"]
+
+INDENT = 18
+"""The column at which what a verdict says begins."""
 
 VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
 """The verdicts in the order in which they are counted."""
@@ -80,7 +84,23 @@ def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
 
 def _full(verdict: Verdict, head: str) -> list[str]:
     rows = [head]
+    repairs = {f"{repair.text}  {repair.note}": repair for repair in verdict.repairs}
     for name, text in verdict.facts():
-        rows += wrap(one_line(text), room(), initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * 18,
+        lines = wrap(one_line(text), room(), initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * INDENT,
                      break_long_words=False, break_on_hyphens=False)  # fmt: skip
+        repair = repairs.get(text) if "instead" in name else None
+        rows += lines if repair is None else _with_carets(lines, repair)
+    return rows
+
+
+def _with_carets(lines: Sequence[str], repair: Repair) -> list[str]:
+    """Return the lines of a repair with carets under the pieces that differ from the claim."""
+    rows, place = [], 0
+    for line in lines:
+        piece = line[INDENT:]
+        place = repair.text.find(piece[:1], place) if piece else place
+        end = place + len(piece)
+        marks = carets(repair.changed, place, min(end, len(repair.text)))
+        rows += [line, " " * INDENT + marks] if marks else [line]
+        place = end
     return rows

@@ -118,15 +118,15 @@ def test_a_repair_edits_the_side_that_may_be_edited_and_no_other(tmp_path, print
         f"claim = '{sides['left']} == {sides['right']}'", f"editable = ['{printed}']",
     )  # fmt: skip
     (verdict,) = symrot.check_file(path)
-    assert {place for repair in verdict.repairs for place in repair.changes} == {printed}
-    assert "M*R**2/2" in [repair.changes[printed] for repair in verdict.repairs]
+    assert {place for repair in verdict.repairs for place in repair.edited} == {printed}
+    assert "M*R**2/2" in [repair.edited[printed] for repair in verdict.repairs]
 
 
 def test_a_definition_is_never_edited_unless_the_claim_says_so(tmp_path):
     lines = ("symbols = ['a', 'b', 'm']", "define = [['I1', 'm*(a**2 + b**2)/12'], ['I2', 'm*(a**2 - b**2)/12']]")
     (verdict,) = symrot.check_file(claims_file(tmp_path, *lines, "claim = 'I1 == I2'"))
     assert verdict.verdict == "false" and verdict.repairs
-    assert {place for repair in verdict.repairs for place in repair.changes} <= {"left", "right"}
+    assert {place for repair in verdict.repairs for place in repair.edited} <= {"left", "right"}
 
 
 def test_a_part_to_be_edited_is_a_part_of_the_claim(tmp_path):

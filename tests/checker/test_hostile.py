@@ -24,9 +24,9 @@ TEXTS = {
     "functions nested 1000 deep": ("sin(" * 1_000 + "x" + ")" * 1_000 + " == x", "nested"),
     "4500 signs": ("-" * 4_500 + "(" * 61 + "x" + ")" * 61 + " == x", "nested"),
     "10 000 symbols": ("+".join(f"x{n}" for n in range(10_000)) + " == 1", "at most"),
-    "a tower": ("x**x**x == 1", "a number as an exponent"),
-    "a tower of numbers": ("9**9**9 == x", "exponent up to 64"),
-    "a high power": ("(a + b)**1000 == 1", "exponent up to 64"),
+    "a tower": ("**".join("x" * 20) + " == 1", "nested|inside each other"),
+    "a tower of numbers": ("9**9**9 == x", "exponent up to 1000000"),
+    "a high power": ("(a + b)**10000000 == 1", "exponent up to 1000000"),
     "a high power of a matrix": (f"{full_matrix(6)}**60 == 0", "at most 200000 symbols"),
     "powers of powers of a matrix": ("(Matrix([[a, b], [c, d]])**64)**64 == 0", "at most 200000 symbols"),
     "a large determinant": (f"det({full_matrix(12)}) == 0", "instead of 479001600"),
@@ -67,7 +67,7 @@ TEXTS = {
     "2000 methods": ("x" + ".T" * 2000 + " = 1", "fewer methods"),
     "900 lines": ("x = y\n" * 900, "at most 30 equations|not a chain"),
     "a chain of 900": ("x = " * 900 + "x", "at most 30 equations|not a chain"),
-    "a raised tower": ("(x + y)⁹⁹⁹ = 1", "exponent up to 64"),
+    "a raised tower": ("(x + y)⁹⁹⁹⁹⁹⁹⁹⁹⁹ = 1", "exponent up to 1000000"),
     "a chain of crosses": (" × ".join("abc" * 20) + " = 1", "comes first"),
     "a method of another name": ("x.applyfunc(eval) == 1", "after '.'"),
     "a method of SymPy that runs code": ("x.subs(y, z) == x.evalf() + x.free_symbols", "after '.'"),
@@ -114,7 +114,7 @@ LATEX = {
     "an input": r"\input{/etc/passwd} = 1",
     "a write": r"\immediate\write18{true} = 1",
     "division by zero": r"\frac{1}{0} = x",
-    "a tower": r"\alpha^{\alpha^{\alpha}} = 1",
+    "a tower": r"\alpha^{" * 20 + r"\alpha" + "}" * 20 + " = 1",
 }
 
 

@@ -66,12 +66,15 @@ class Definitions:
         Names of functions of time.
     divisors, radicands : tuple
         Formulas that the texts of the definitions divide by, or take even roots of.
+    bases : tuple of Expr
+        Bases of powers whose exponents are no numbers.
     """
 
     values: Mapping[str, Any]
     functions: frozenset[str]
     divisors: tuple[Divisor, ...]
     radicands: tuple[Expr, ...]
+    bases: tuple[Expr, ...]
 
 
 @dataclass(frozen=True)
@@ -179,15 +182,16 @@ class Claim:
             source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
             values[name] = interpreter.read(node, source, place)
         return Definitions(
-            values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands)
-        )
+            values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands),
+            tuple(interpreter.bases),
+        )  # fmt: skip
 
     def interpreter(self) -> Interpreter:
         """Return a new interpreter, which turns further syntax trees that use the names of the claim into SymPy."""
         known = self.definitions
         return Interpreter(
             values=dict(known.values), functions=set(known.functions), implied=self.implied,
-            divisors=list(known.divisors), radicands=list(known.radicands),
+            divisors=list(known.divisors), radicands=list(known.radicands), bases=list(known.bases),
         )  # fmt: skip
 
     @cached_property
@@ -216,7 +220,9 @@ class Claim:
         rhs = lhs if right is left else interpreter.read(right, source, self.label("claim"))
         divisors = tuple(dict.fromkeys(divisor.value for divisor in interpreter.divisors))
         radicands = tuple(dict.fromkeys(interpreter.radicands))
-        return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)
+        same = text(left) == text(right)  # equal sides are equal for all bases
+        bases = () if same else interpreter.assumed_bases
+        return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands, bases)
 
 
 def relation_text(relation: Relation) -> str:

@@ -1,16 +1,21 @@
 """Formulas written in the notation that the user typed: SymPy's text, or plain text with ``^``, ``=`` and primes."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Protocol
 
-from symrot.checker.claim.reader import Reading, Relation, read_relation
+from symrot.checker.claim.reader import Reading, Relation, read_expression, read_relation
 from symrot.checker.claim.tree import Node, text
 from symrot.errors import InputError
 
-__all__ = ["Notation", "TypedNotation", "notation_of"]
+__all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
+
+
+SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
+"""What stands between the formulas of a condition."""
 
 
 class Notation(Protocol):
@@ -24,6 +29,9 @@ class Notation(Protocol):
 
     def rewritten(self, source: str) -> str:
         """Return the text of an equation that is given as SymPy's text; words after it stay unchanged."""
+
+    def condition(self, source: str) -> str:
+        """Return the text of a condition, such as ``0 <= x <= pi``, that is given as SymPy's text."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +103,24 @@ class TypedNotation:
             return self.relation(read_relation(claim)) + joint + rest
         except InputError:
             return source
+
+    def condition(self, source: str) -> str:
+        """Return a condition, given as SymPy's text, in this notation."""
+        return with_formulas(source, self.formula, {"==": "="}) if self.plain else source
+
+
+def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
+    """Return a condition in SymPy's text, such as ``0 <= x <= pi and y > 0``, with its formulas and signs rewritten.
+
+    A condition that cannot be read stays unchanged.
+    """
+    pieces = SIGN.split(source)
+    try:
+        formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
+    except InputError:
+        return source
+    between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
+    return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))
 
 
 def decimal(value: Fraction) -> str:

@@ -9,17 +9,18 @@ import re
 from collections.abc import Sequence
 from functools import reduce
 
-import sympy
-from sympy import Abs, Add, Expr, Mul, Pow
+from sympy import Expr
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.decide.definite import surely_nonnegative
+from symrot.checker.decide.ranges import range_text
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Requirement
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["branch_requirements", "requirements", "surely_nonnegative"]
+__all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -27,9 +28,6 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 MOST_TERMS, LARGEST_DEGREE = 400, 24
 """The most terms, and the largest degree, of a residual that is factored."""
-
-MOST_TERMS_OF_SQUARE = 40
-"""The most terms of a sum that is factored to see if it is a square."""
 
 
 def requirements(
@@ -157,8 +155,9 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
     Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
-    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. The list is empty if that
-    is so wherever the claim is defined.
+    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
+    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if that is so wherever the
+    claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -175,7 +174,8 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 signs[f"{as_text(value)} >= 0"] = value
         else:
             stated = tuple(signs[text] for text in sorted(signs))
-            return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
+            text = range_text([(value, ">= 0") for value in stated], divided=False)
+            return [Requirement("sign_branch", text, signs=stated)] if text else []
     return None
 
 
@@ -183,23 +183,3 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
     """Return (a, b) with poly = a + b*generator."""
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero
-
-
-def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula, such as a sum of squares, shows that it is never negative.
-
-    Its square roots are taken to be real.
-    """
-    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
-        return True
-    if isinstance(value, Pow) and value.exp.is_Rational:
-        even = value.exp.q == 1 and value.exp.p % 2 == 0
-        return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
-    if isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args)):
-        return True
-    if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
-        return False
-    if any(value == 1 - node**2 for node in value.atoms(sympy.sin, sympy.cos)):
-        return True
-    factored = sympy.factor(value)
-    return not isinstance(factored, Add) and surely_nonnegative(factored)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
+from symrot.checker.claim.notation import with_formulas
 from symrot.checker.claim.reader import Relation, read_relation
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.latex.reader import Names, read_latex
@@ -25,6 +26,9 @@ VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot"}
 """Product of two vectors -> its sign."""
 
 NO_VECTORS: Mapping[str, bool] = {}
+
+SIGNS = {"==": "=", "!=": "\\neq", ">=": "\\geq", "<=": "\\leq", "and": "\\text{ and }", "or": "\\text{ or }"}
+"""Sign of a condition -> its LaTeX."""
 
 SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
@@ -54,6 +58,10 @@ class LatexNotation:
     def rewritten(self, source: str) -> str:
         """Return the LaTeX of an equation that is given as SymPy's text."""
         return latex_of_text(source, self.functions, self.vectors)
+
+    def condition(self, source: str) -> str:
+        """Return the LaTeX of a condition that is given as SymPy's text."""
+        return with_formulas(source, self.formula, SIGNS)
 
 
 def latex_of(

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, islice
 from typing import Any
 
+from sympy import Expr
+
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
@@ -20,6 +22,7 @@ from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_fact
 from symrot.checker.repair.entries import by_entries, merged
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
 from symrot.checker.repair.insertions import exchanged_definitions, missing_matrices, missing_terms
+from symrot.checker.repair.joined_pairs import joined_pairs, pair_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solutions
 from symrot.checker.verdict import Diagnosis, Repair
@@ -104,6 +107,8 @@ class _Search:
             if len(repairs) < MOST_REPAIRS:
                 repairs += self.proven(stage(), MOST_REPAIRS - len(repairs))
         if not repairs:
+            repairs = self.proven(joined_pairs(numeric, changes), MOST_REPAIRS)
+        if not repairs:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
         repairs.sort(key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:
@@ -151,15 +156,8 @@ class _Search:
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:
-            if first.place == second.place:
-                tree = merged(self.numeric.tree_at(first.place), first.edit, second.edit)
-                if tree is None:
-                    continue
-                edit = Edit("two_faults", first.edit.cost + second.edit.cost, (), tree)
-                both: tuple[Change, ...] = (Change(first.place, edit),)
-            else:
-                both = (first, second)
-            if self.numeric.holds(both):
+            both = pair_of(self.numeric, first, second)
+            if both is not None and self.numeric.holds(both):
                 yield Candidate(first.cost + second.cost, "two_faults", both)
             if not self.numeric.affordable():
                 return
@@ -214,7 +212,7 @@ class _Search:
             self.products += decision.products
             if decision.verdict == "true" and not self.is_constant(equation):
                 parts = {change.place: written(change.edit.tree) for change in candidate.changes}
-                repairs.append(Repair(text, code, round(cost, 3), changes=parts))
+                repairs.append(Repair(text, code, round(cost, 3), edited=parts))
                 self.accepted.append(candidate)
         return repairs
 
