@@ -15,7 +15,7 @@ from symrot.checker.claim.claims import (
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.decide.decision import Equation, decide_equation
-from symrot.checker.text import verdict_on_reading, verdict_on_text
+from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.verdict import Verdict
@@ -129,13 +129,14 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
     """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
-    from symrot.checker.latex.reader import Names, latex_reading
+    from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.writing import LatexNotation
 
     functions = functions_of_time(assume)
-    reading = latex_reading(source, Names(functions=functions))
-    notation = LatexNotation(functions, reading.vectors)
-    return verdict_on_reading(reading, notation, source, assume, units, repair)
+    readings = latex_readings(source, Names(functions=functions))
+    return verdict_on_readings(
+        readings, lambda reading: LatexNotation(functions, reading.vectors), source, assume, units, repair
+    )
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

@@ -4,13 +4,13 @@ A sentence reports each reading with another verdict. A chain ``a = b = c`` is d
 one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
-from symrot.checker.claim.notation import Notation, notation_of
+from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
 from symrot.checker.claim.reader import Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
@@ -20,7 +20,7 @@ from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_reading", "verdict_on_text"]
+__all__ = ["verdict_on_readings", "verdict_on_text"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
@@ -40,14 +40,29 @@ OUTCOMES = {
 def verdict_on_text(
     source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True
 ) -> Verdict:
-    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+    """Return the verdict on a text as people type it, with a note on every other reading whose verdict differs.
 
     Raises
     ------
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
-    readings = readings_of(source)
+    return verdict_on_readings(readings_of(source), notation_of, source, assume, units, repair)
+
+
+def verdict_on_readings(
+    readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
+    units: Mapping[str, str] | None = None, repair: bool = True,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+
+    ``notation`` returns the notation in which the formulas of a reading are written.
+
+    Raises
+    ------
+    InputError
+        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+    """
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
     late = False
@@ -56,7 +71,7 @@ def verdict_on_text(
         if late:
             break
         try:
-            verdict = verdict_on_reading(reading, notation_of(reading), source, assume, units, repair and not verdicts)
+            verdict = verdict_on_reading(reading, notation(reading), source, assume, units, repair and not verdicts)
         except InputError as reason:
             refusal = refusal or reason
             continue
@@ -72,17 +87,19 @@ def verdict_on_text(
         notes.append(f"the usual reading has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:
-            notes.append(_on_reading(usual, reading, other))
+            notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
 
 
-def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
+def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
     """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
     places = reading.flipped or usual.flipped
-    changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
+    if isinstance(notation, TypedNotation):
+        notation = replace(notation, plain=usual.plain or reading.plain)
+    changed = _text_of(reading, notation)
     excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
 

@@ -7,7 +7,7 @@ have several, and the usual one comes first.
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
@@ -21,8 +21,8 @@ from symrot.checker.typed.words import UNITS, pieces_of_word, shorthands, split_
 from symrot.errors import InputError, complaint
 
 __all__ = [
-    "DEEPEST_NESTING", "LONGEST_TEXT", "Chain", "Declared", "Reading", "Relation", "read_expression", "read_relation",
-    "readings_of", "with_time",
+    "DEEPEST_NESTING", "LONGEST_TEXT", "Chain", "Declared", "Reading", "Relation", "distinct_readings", "each_reading",
+    "read_expression", "read_relation", "readings_of", "with_time",
 ]  # fmt: skip
 
 LONGEST_TEXT = 20_000
@@ -454,9 +454,9 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
         others = (
             replace(r, flipped=r.flipped or tuple(d.excerpt for d in r.doubts)) for r in _typed(text, one_side, False)
         )
-        return _distinct([strict, *others])
+        return distinct_readings([strict, *others])
     try:
-        return _distinct(_typed(text, one_side, True))
+        return distinct_readings(_typed(text, one_side, True))
     except InputError as reason:
         raise (refusal or reason) from None
 
@@ -464,11 +464,18 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
     """Yield the readings of a text as people type it: the usual one first, then the other ones."""
     try:
-        usual = text.read(False, False, (), one_side)
+        yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
     except InputError:
         if required:
             raise
-        return
+
+
+def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
+    """Yield the readings of a text: the usual one first, then those in which a doubtful place has its other meaning.
+
+    ``read`` returns the reading in which the doubts with the given keys have their less usual meaning.
+    """
+    usual = read(())
     yield usual
     keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
     kinds = dict.fromkeys(kind for kind, _ in keys)
@@ -476,12 +483,12 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
     choices += [{key} for key in keys if key[0] not in ("word", "name")]
     for flips in choices:
         try:
-            yield text.read(False, False, flips, one_side)
+            yield read(flips)
         except InputError:
             continue
 
 
-def _distinct(readings: Iterable[Reading]) -> list[Reading]:
+def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
     """Return the readings that have different trees.
 
     If there are too many to try, a note on the first reading says so.
@@ -535,7 +542,7 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
     if strict is not None:
         return strict.lines[0].sides[0]
     try:
-        readings = _distinct(_typed(text, True, True))
+        readings = distinct_readings(_typed(text, True, True))
     except InputError as reason:
         raise (refusal or reason) from None
     return _only(readings, source, where).lines[0].sides[0]
@@ -553,7 +560,7 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
     strict, refusal = _strict(text, False)
     if strict is None:
         try:
-            strict = _only(_distinct(_typed(text, False, True)), source, where)
+            strict = _only(distinct_readings(_typed(text, False, True)), source, where)
         except InputError as reason:
             raise (refusal or reason) from None
     if len(strict.lines) > 1 or len(strict.lines[0].signs) > 1:

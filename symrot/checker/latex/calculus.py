@@ -1,6 +1,7 @@
 """Functions, roots, fractions, derivatives and integrals in LaTeX."""
 
-from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
@@ -16,40 +17,69 @@ class CalculusPart(NamesPart):
 
     def trigonometric(self, function: tree.Node) -> Node:
         power = None
+        name = FUNCTIONS[function.text]
         if raised := self.script("^"):
             power = self.argument(raised.inside)
-            if power.kind != "number":
-                raise self.fail("a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)", function)
+            sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
+            is_inverse = power == negated(number(1)) and f"a{name}" in BUILT_IN
+            if is_inverse and not self.doubtful("inverse", function, self.end_of_next(), sure):
+                name, power = f"a{name}", None
+            elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):
+                raise self.fail(sure, function)
         opening = self.peek()
         if opening.text in CLOSING or opening.kind == "row":
             argument = self.bracket(self.next())
         else:
-            argument = self.loose_argument(function)
-        node = Node("call", FUNCTIONS[function.text], (argument,))
+            argument, own = self.loose_argument(function)
+            power = own if power is None else power if own is None else product([power, own])
+        node = Node("call", name, (argument,))
         return node if power is None else Node("power", None, (node, power))
 
-    def loose_argument(self, function: tree.Node) -> Node:
-        """Read the argument of a sine without brackets, such as ``2\theta``; refuse an ambiguous argument."""
-        factors = [self.factor()] if not self.at("-") else []
-        if not factors or factors[0].kind == "power":
-            raise self.fail(f"brackets around the argument of {function.text}")
-        if factors[0].kind == "number" or (factors[0].kind == "product" and not any(
-            piece.kind in ("name", "call") for _, piece in walk(factors[0]))):  # fmt: skip
-            if not self.starts_factor():
-                return factors[0]
-            factors.append(self.factor())
+    def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
+        r"""Read the argument of a sine without brackets, such as ``2\theta``.
+
+        Return it, and the power of the whole sine if a power after the argument means that: ``\sin\theta^2``.
+        """
+        expected = f"brackets around the argument of {function.text}"
+        if self.at("-") and self.flips is None:
+            raise self.fail(expected)
+        negative = self.take("-")
+        factors, power = [self.factor()], None
+        is_power = factors[0].kind == "power"
+        if is_power and self.doubtful("power of argument", function, self.peek().start, expected):
+            factors, power = [factors[0].args[0]], factors[0].args[1]
+        only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
+            piece.kind in ("name", "call") for _, piece in walk(factors[0])))  # fmt: skip
+        if power is None and not (only_number and not self.starts_factor()):
+            factors += self.further_factors(function, expected, only_number)
+        argument = product(factors)
+        return (negated(argument) if negative else argument), power
+
+    def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
+        """Read the factors, after the first, of the argument of a sine without brackets."""
+        factors = [self.factor()] if required else []
+        first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
             factors.append(self.factor())
         follower = self.peek()
-        if follower.text == "[" and self.holds_skew_matrix():
-            return product(factors)
-        ambiguous = is_letter(follower) or follower.text in ("\\frac", "\\sqrt", "(", "[", "\\pi", "/")
         free = self.is_spaced() or (self.integrals and self.differential())
-        if follower.text == "/" and self.peek(1).text in FUNCTIONS:
-            return product(factors)  # \sin\phi/\cos\theta
-        if follower.text == "/" or (ambiguous and not free):
-            raise self.fail(f"brackets around the argument of {function.text}", follower)
-        return product(factors)
+        if follower.text == "[" and self.holds_skew_matrix():
+            return factors
+        if follower.text == "/":
+            below = self.peek(1)
+            if below.text in FUNCTIONS:
+                return factors  # \sin\phi/\cos\theta
+            usual = below.kind == "number"  # \cos\theta/2
+            if self.doubtful("slash after argument", function, below.start + 1, expected, follower) != usual:
+                self.next()
+                factors.append(Node("inv", None, (self.factor(),)))
+            return factors
+        letters = is_letter(follower) or follower.text == "\\pi"
+        if not free and (letters or follower.text in ("\\frac", "\\sqrt", "(", "[")):
+            tight = first.kind == "letter" and first.start + 1 == follower.start and letters  # \cos kx
+            if self.doubtful("argument", function, self.end_of_next(), expected, follower) != tight:
+                factors.append(self.factor())
+        return factors
 
     def holds_skew_matrix(self) -> bool:
         r"""Return whether the bracket at the cursor is a skew matrix, ``[a\times]`` or ``[a]_\times``."""

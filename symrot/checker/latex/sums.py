@@ -9,9 +9,10 @@ from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
+from symrot.checker.latex.macros import INSTEAD
 from symrot.latex import tree
 
-__all__ = ["FUNCTIONS", "SumsPart"]
+__all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
     f"\\{command}": name
@@ -26,9 +27,16 @@ FUNCTIONS = {
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
 SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
                  "flalign")  # fmt: skip
-ENDS = frozenset(
-    ["", "+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'"]
-)
+SIGNS = {
+    "=": "==", "\\ge": ">=", "\\geq": ">=", "\\geqslant": ">=", ">": ">", "\\gt": ">", "\\le": "<=", "\\leq": "<=",
+    "\\leqslant": "<=", "<": "<", "\\lt": "<",
+}  # fmt: skip
+"""Sign of a relation -> the sign in a claim."""
+
+ENDS = frozenset([
+    "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "\\otimes", "*", "/", "^",
+    "_", "'", *SIGNS,
+])  # fmt: skip
 """Items that cannot start a factor."""
 
 
@@ -113,24 +121,41 @@ class SumsPart(Cursor):
                 self.next()
                 if divided:
                     raise self.fail("brackets, since a second slash is ambiguous", token)
-                if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values():
+                if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values() and self.flips is None:
                     raise self.fail("brackets, since the slash may belong to the argument", token)
-                factors.append(Node("inv", None, (self.factor(),)))
-                simple = len(factors) == 2 and all(f.kind == "number" for f in (factors[0], factors[1].args[0]))
-                divided = None if simple else token
+                divisor, sure = self.divisor(factors, token)
+                factors.append(Node("inv", None, (divisor,)))
+                divided = None if sure else token
             elif not self.starts_factor():
                 return product(factors)
-            elif divided:
-                raise self.fail("brackets, since it is not clear how much the slash divides by", divided)
             elif token.kind == "number":
                 raise self.fail("brackets or a product sign before a number")
             else:
                 factors.append(self.factor())
 
+    def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
+        """Read the formula after a slash: a factor, or the product ``2m`` of ``p^2/2m``.
+
+        Return it, and whether the factors after it are certainly no part of it, as in ``1/2 m``.
+        """
+        first = self.peek()
+        below = [self.factor()]
+        if len(factors) == 1 and factors[0].kind == below[0].kind == "number":
+            return below[0], True
+        whole = first.kind == "number" and factors[-1].kind != "number"
+        while self.starts_factor() and self.peek().kind != "number":
+            follower = self.peek()
+            usual = whole and is_letter(follower)
+            ambiguous = "brackets, since it is not clear how much the slash divides by"
+            if self.doubtful("divisor", slash, self.peek(1).start, ambiguous) == usual:
+                break
+            below.append(self.factor())
+        return product(below), False
+
     def starts_factor(self) -> bool:
         """Return whether a factor may start at the cursor."""
         item = self.peek()
-        if item.text in ENDS:
+        if item.text in ENDS or self.words(item):
             return False
         if item.text in ("|", "\\|"):
             return item.text not in self.open_bars
@@ -147,7 +172,8 @@ class SumsPart(Cursor):
         while raised := self.script("^"):
             if node.kind == "power":
                 raise self.fail("brackets around a repeated power", raised)
-            if node.kind == "call" and node.value in FUNCTIONS.values():
+            is_function = node.kind == "call" and node.value in FUNCTIONS.values()
+            if is_function and item.start not in self.short and self.flips is None:
                 raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
         return node
@@ -195,7 +221,7 @@ class SumsPart(Cursor):
         read = self.readers.get("letter" if is_letter(item) else item.text)
         if read is None:
             known = "a command that is known" if item.text.startswith("\\") else "a number, a symbol or a bracket"
-            raise self.fail(known, item)
+            raise self.fail(f"{INSTEAD[item.text]}, instead of {item.text}" if item.text in INSTEAD else known, item)
         return read(self, item)
 
     def bracket(self, opening: tree.Node) -> Node:
