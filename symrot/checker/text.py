@@ -134,7 +134,7 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
-    verdict = with_rounding(claim, check_claim(claim, repair))
+    verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
     return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
 

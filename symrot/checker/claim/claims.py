@@ -13,26 +13,28 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
+from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
+from symrot.checker.arrays.matrices import matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
     has_natural_base,
-    imaginary_letter,
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
-from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
+from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError, complaint
+from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
@@ -98,6 +100,8 @@ class Claim:
         Units by name.
     notes : tuple of str
         Sentences about how the text is read.
+    has_parts : bool
+        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
     """
 
     id: str = ""
@@ -114,6 +118,7 @@ class Claim:
     sources: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    has_parts: bool = False
 
     @property
     def text(self) -> str:
@@ -273,22 +278,27 @@ def claim_of_relation(
     assume = [text for text in assume if _matrix_given(text) is None]
     define = [*_with_entries(matrices, relation), *define]
     hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    relation, vectors, with_units = _with_vectors(relation, list(vectors), define)
+    if (unit := imaginary_unit([*relation[1:], *context])) is not None:
+        relation = with_parts(relation, str(unit.value), source)
+        notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
+    arrays = _with_arrays(relation, vectors, define)
+    relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
+    vectors = [*vectors, *map(Vector, arrays.vectors)]
+    vectors = [vector for vector in vectors if vector.name not in dict(define)]
+    relation, vectors, with_units = _with_vectors(relation, vectors, define)
+    relation, lengths = with_lengths(relation, _shapes(vectors, define))
+    notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
+    moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}
+    relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
     notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
-    letter = imaginary_letter(everything)
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
-        if letter is not None:
-            expected = f"real numbers (write cos(x) and sin(x) for the parts of exp({letter.value}*x))"
-            raise complaint(source, "", letter.span[0], expected)
         notes.append("e is read as the base of the exponential function")
         relation = _with_natural_base(relation)
         hypotheses = tuple(map(_with_natural_base, hypotheses))
         define = [(name, with_natural_base(tree)) for name, tree in define]
-    elif letter is not None:
-        notes.append(f"{letter.value} is read as a real symbol, not as the imaginary unit")
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
     sources |= {f"define.{n}": source for n in range(len(define))}
     trees = [
@@ -313,6 +323,7 @@ def claim_of_relation(
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
+        has_parts=unit is not None,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
@@ -344,9 +355,7 @@ def _with_vectors(
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
-    shapes: dict[str, Shape] = {}
-    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
-        shapes[name] = shape_of(tree, shapes)
+    shapes = _shapes(vectors, define)
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape
@@ -356,6 +365,39 @@ def _with_vectors(
         vectors = [*vectors, *map(Vector, new)]
         shapes |= new
     return with_units, vectors, with_units != relation
+
+
+def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> dict[str, Shape]:
+    """Return the shapes of vectors and of defined names."""
+    shapes: dict[str, Shape] = {}
+    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
+        shapes[name] = shape_of(tree, shapes)
+    return shapes
+
+
+def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
+    """Return the quaternions, matrices and columns that a relation uses without a definition, with one for each."""
+    known = {name for name, _ in define}
+    names = {vector.name for vector in vectors}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
+    known |= names | {name for name, _ in arrays.definitions}
+    matrices = used_matrices(arrays.relation[1:], known)
+    columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
+    return replace(
+        arrays,
+        definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
+        relation=_with_scalar_products(arrays.relation, columns),
+        vectors=(*arrays.vectors, *columns),
+        notes=(
+            *arrays.notes,
+            *(f"{name} is a 3 x 3 matrix with the entries {name}_11, {name}_12 and so on" for name in matrices),
+        ),
+    )
+
+
+def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
+    sign, left, right = relation
+    return sign, with_scalar_products(left, names), with_scalar_products(right, names)
 
 
 def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:

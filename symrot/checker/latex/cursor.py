@@ -131,6 +131,7 @@ class Cursor(cursor.Cursor):
                 raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+        self.frames = _frames(pieces)
         self.short = shorthands(pieces, {*names.symbols, *names.functions, *names.matrices, *names.others})
         if self.short and flips is not None and self.doubtful("shorthand", pieces[0], pieces[0].start + 1, ""):
             self.short = {}
@@ -167,6 +168,17 @@ def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
     for piece in pieces:
         both = signs.get(piece.text)
         yield Token("mark", both[not upper], piece.start) if both else piece
+
+
+def _frames(pieces: Sequence[Token]) -> set[str]:
+    r"""Return the marks of frames before names, as A and B in ``{}^A x = R\,{}^B x``."""
+    texts = [piece.text for piece in pieces]
+    frames = set()
+    for place in range(len(texts) - 3):
+        if texts[place : place + 2] == ["{", "}"] and texts[place + 2] in ("^", "_"):
+            rest = [text for text in texts[place + 3 :] if text not in ("{", *UPRIGHT, "\\mathcal", "\\mathbf")]
+            frames.add(rest[0])
+    return frames
 
 
 def _unwrapped(source: str) -> tuple[int, int]:

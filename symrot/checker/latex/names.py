@@ -78,6 +78,8 @@ class NamesPart(SumsPart):
             known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
         if known in ROTATIONS and known not in self.names and self.at("("):
             return self.called(known)
+        if name == "S" and not subscript and (skew := self.skew_of_vector()) is not None:
+            return skew
         if primes and (known in self.names.functions or self.called_with_time()):
             self.take_time_call(known)
             return self.derivative(Node("name", known), primes, item)
@@ -85,6 +87,19 @@ class NamesPart(SumsPart):
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
         return self.vector(known) if known in self.crossed else Node("name", known)
+
+    def skew_of_vector(self) -> Node | None:
+        r"""Read the bracket of ``S(\omega)``, the skew matrix of a vector; None for any other bracket."""
+        inner = self.peek(1)
+        is_vector = inner.text in ("\\omega", "\\Omega", *VECTOR_MARKS) and self.peek(2).text == ")"
+        if not self.at("(") or not is_vector or "S" in self.names or self.flips is None:
+            return None
+        self.next()
+        vector = self.base(self.next())
+        self.expect(")")
+        self.note_vector(vector)
+        self.notes.append("S(..) is read as the skew matrix of a vector")
+        return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
         r"""Read a change of a quantity, ``\Delta t``, as one name Delta_t."""

@@ -1,9 +1,11 @@
 """Sums, products, powers, brackets and matrices in LaTeX: the order of operations."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
@@ -24,6 +26,9 @@ FUNCTIONS = {
 }
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
+LONGEST_MATRIX_NAME = 2
+"""The most letters of the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
+
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
 SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
                  "flalign")  # fmt: skip
@@ -33,15 +38,22 @@ SIGNS = {
 }  # fmt: skip
 """Sign of a relation -> the sign in a claim."""
 
+QUATERNION_SIGNS = ("\\otimes", "\\circ", "\\odot")
+QUATERNION_LETTERS = ("q", "p", "Q", "P")
+"""Signs of the product of quaternions, and letters that are usually quaternions."""
+
 ENDS = frozenset([
-    "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "\\otimes", "*", "/", "^",
-    "_", "'", *SIGNS,
+    "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",
+    *QUATERNION_SIGNS, *SIGNS,
 ])  # fmt: skip
 """Items that cannot start a factor."""
 
 
 class SumsPart(Cursor):
     """The methods of the LaTeX reader that read sums, products, powers, brackets and matrices."""
+
+    vector: Callable[[str], Node]
+    """Return the name of a vector; a further part defines it."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
@@ -65,9 +77,12 @@ class SumsPart(Cursor):
             negative = self.next().text == "-"
         left = self.run()
         crossed = False
-        while self.at("\\cdot", "\\times", "*") and not self.is_cross_matrix():
+        while self.at("\\cdot", "\\times", "*", *QUATERNION_SIGNS) and not self.is_cross_matrix():
             operator = self.next()
             right = self.run()
+            if operator.text in QUATERNION_SIGNS:
+                left = quaternion_product(left, right)
+                continue
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
             if operator.text == "\\times" and any(kinds) and not all(kinds):
                 self.note_vector(right if kinds[0] else left)
@@ -185,6 +200,10 @@ class SumsPart(Cursor):
             mark = tree.alone(mark.inside)
         if mark.text in ("T", "\\top", "\\intercal"):
             return Node("transpose", None, (node,))
+        if mark.text in ("*", "\\ast", "\\star"):
+            return self.starred(node)
+        if mark.text == "\\circ":
+            return product([node, Node("name", "pi"), Node("inv", None, (number(180),))])  # degrees
         if mark.text in ("\\times", "×"):
             self.note_vector(node)
             return Node("call", "skew", (node,))
@@ -195,6 +214,14 @@ class SumsPart(Cursor):
         if exponent == number(2) and self.names.is_column(node):
             return Node("call", "dot", (node, node))
         return Node("power", None, (node, exponent))
+
+    def starred(self, node: Node) -> Node:
+        r"""Return the conjugate of a quaternion, or a name with a star, as in ``T^*``."""
+        products = any(sign in self.source for sign in QUATERNION_SIGNS)
+        if node.kind != "name" or products or str(node.value)[:1] in QUATERNION_LETTERS:
+            return Node("call", CONJUGATE, (node,))
+        base, marked, _ = str(node.value).partition(MARK)
+        return self.vector(f"{base}_star") if marked else replace(node, value=f"{base}_star")
 
     def argument(self, node: tree.Node) -> Node:
         """Return the argument of a command: a group in braces, or one token."""
@@ -224,14 +251,28 @@ class SumsPart(Cursor):
             raise self.fail(f"{INSTEAD[item.text]}, instead of {item.text}" if item.text in INSTEAD else known, item)
         return read(self, item)
 
+    def matrix_name(self) -> Node | None:
+        r"""Read capital letters in square brackets, ``[FB]``, as the name of one matrix; None for other brackets."""
+        texts = [item.text for item in self.items[self.index :]]
+        end = texts.index("]") if "]" in texts else 0
+        name, after = "".join(texts[:end]), self.peek(end + 1)
+        is_name = name.isalpha() and name.isupper() and all(len(text) == 1 for text in texts[:end])
+        if not is_name or not 1 <= end <= LONGEST_MATRIX_NAME or self.flips is None:
+            return None
+        if end == 1 and (isinstance(after, tree.Script) and tree.alone(after.inside).text in ("\\times", "×")):
+            return None
+        self.index += end + 1
+        if end > 1:
+            self.notes.append(f"[{name}] is read as the name of one matrix, not as a product")
+        return Node("name", name)
+
     def bracket(self, opening: tree.Node) -> Node:
         if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
-            letter = tree.alone(frame.inside)
-            letter = tree.alone(letter.inside) if isinstance(letter, tree.Font) else letter
-            self.notes.append(f"the mark {letter.text} before a name is read as its frame, and left out")
-            return self.base(self.next())
+            return self.framed(frame)
         if opening.kind == "row":
             return self.inside(opening, self.expression)
+        if opening.text == "[" and (matrix := self.matrix_name()) is not None:
+            return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
         crossed = opening.text == "[" and self.take("\\times")
@@ -245,6 +286,22 @@ class SumsPart(Cursor):
             self.next()
         self.note_vector(inner)
         return Node("call", "skew", (inner,))
+
+    def framed(self, mark: tree.Script) -> Node:
+        r"""Read a name after its frame, ``{}^A R_B``; if there are several frames, they are parts of the names."""
+        frame = tree.alone(mark.inside)
+        while isinstance(frame, tree.Font):
+            frame = tree.alone(frame.inside)
+        letter = frame.text.removeprefix("\\")
+        name = self.base(self.next())
+        if len(self.frames) == 1:
+            self.notes.append(f"the mark {letter} before a name is read as its frame, and left out")
+            return name
+        if name.kind not in ("name", "call") or not letter.isalnum():
+            raise self.fail("a name after the mark of a frame", mark)
+        base, marked, _ = str(name.value).partition(MARK)
+        self.notes.append(f"the mark {letter} before {base} is read as a part of the name, {base}_{letter}")
+        return self.vector(f"{base}_{letter}") if marked else replace(name, value=f"{base}_{letter}")
 
     def bars(self, bar: tree.Node) -> Node:
         inner = self.barred(self.expression, bar.text)

@@ -133,7 +133,7 @@ REFUSED = (
     ("[1, 2; 3] = x", "equal length"), ("[a b; c d] = x", "commas between the entries"),
     ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
     ("a × b × c = 0", "which of the products"), ("xⁿ = 1", "position 2"), ("x²⁻ = 1", "a whole number"), ("м = 1", "position 1"),
-    ("exp(I*x) == cos(x) + I*sin(x)", "such as I_1"), ("I*I == -1", "means something else"), ("log(E) == 1", "means something else"),
+    ("I*I == -1", "means something else"), ("log(E) == 1", "means something else"),
     ("x = 1 and y = 2", "without the word 'and'"), ("x = 1, y", "on a line of its own"), (";", "a formula at position 1"), ("x.dot() == 1", "a number, a name|one argument"), ("M.inv(2) == 1", "no arguments"), ("Eq(x, y, z)", "two arguments in Eq"),
 )  # fmt: skip
 
