@@ -7,11 +7,11 @@ one by one; a line that gives a name to a formula defines the name for the lines
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.claims import Claim, functions_of_time
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
-from symrot.checker.claim.reader import Reading, readings_of
+from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
 from symrot.checker.recognition.together import fit_together
@@ -47,7 +47,8 @@ def verdict_on_text(
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
-    return verdict_on_readings(readings_of(source), notation_of, source, assume, units, repair)
+    readings = readings_of(source, declared=Declared(functions=functions_of_time(assume)))
+    return verdict_on_readings(readings, notation_of, source, assume, units, repair)
 
 
 def verdict_on_readings(
@@ -76,14 +77,15 @@ def verdict_on_readings(
             refusal = refusal or reason
             continue
         verdicts.append((reading, verdict))
-    if refusal is not None and not verdicts:
-        raise refusal
+    of_usual = readings[0] in [reading for reading, _ in verdicts]
+    if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
+        raise refusal  # an unusual reading accuses nobody
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "recognised"), 0)
     if verdicts[0][1].verdict == "definition":
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
-    if refusal is not None and readings[0] not in [reading for reading, _ in verdicts]:
+    if refusal is not None and not of_usual:
         notes.append(f"the usual reading has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:

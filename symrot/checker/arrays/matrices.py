@@ -60,6 +60,10 @@ def _of_matrix(node: Node) -> Sequence[Node]:
     """Return the formulas in a node that are matrices by their place: under a transpose, or in ``A B A^T``."""
     if node.kind == "transpose" or (node.kind == "call" and node.value in OF_MATRICES):
         return node.args
+    if node.kind == "call" and node.value == "cross" and all(side.kind == "product" for side in node.args):
+        first, second = (side.args[0] for side in node.args)
+        is_one = first == second and first.kind == "name" and first.value[0].isupper()
+        return (first,) if is_one else ()  # R a x R b
     if node.kind == "product" and len(node.args) > 2:
         first, *between, last = (factor for factor in node.args if factor.kind != "number")
         inverse = last.kind in ("transpose", "power") or (last.kind == "call" and last.value in OF_MATRICES)

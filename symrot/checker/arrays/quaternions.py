@@ -51,6 +51,8 @@ def used_quaternions(
         return Quaternions(relation)
     reader = _Products(names, {*vectors})
     sides = [reader.read(side) for side in sides]
+    if any(shape_of(side, reader.shapes(shapes)) == (4, 1) for side in sides):
+        reader.pure |= {str(part.value): None for side in sides for part in _vector_of_pair(side)}
     left, right = _of_one_shape(sides, reader.shapes(shapes))
     used = {str(node.value) for side in (left, right) for _, node in walk(side) if node.kind == "name"}
     moving = any(node.kind == "call" and node.value == "diff" for side in sides for _, node in walk(side))
@@ -116,6 +118,13 @@ def _quaternion_names(
     return tuple(names)
 
 
+def _vector_of_pair(node: Node) -> Sequence[Node]:
+    """Return the name of the vector in a quaternion ``(0, v)``, written as a scalar and a vector."""
+    inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
+    is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
+    return inside.args[1:] if is_pair else ()
+
+
 def _is_list(node: Node) -> bool:
     return node.kind == "list" or (node.kind == "call" and node.value == "Matrix")
 
@@ -153,6 +162,8 @@ class _Products:
             return replace(node, args=(base, node.args[1]))
         args = tuple(self.read(child) for child in node.args)
         node = replace(node, args=args)
+        if node.kind == "call" and node.value == PRODUCT:
+            self.pure |= {str(part.value): None for factor in args for part in _vector_of_pair(factor)}
         if node.kind == "call" and node.value == "abs" and self.is_quaternion(args[0]):
             return Node("call", "sqrt", (Node("call", "dot", (args[0], args[0])),), node.span)
         return self.multiplied(node) if node.kind == "product" else node

@@ -5,7 +5,7 @@ are true.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +24,7 @@ from symrot.checker.claim.quantities import (
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, with_time
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
 from symrot.checker.claim.tree import Node, negated, text, walk
@@ -234,9 +234,12 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     return names
 
 
-def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
+def _hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
+    """Return a hypothesis; ``words`` are names of the claim that it holds as they are, not as products of letters."""
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
+    elif declared is None:
+        relation = read_relation(source, where, Declared(words) if words else None, rates=True)
     else:
         relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
@@ -273,11 +276,14 @@ def claim_of_relation(
         For a relation that is no equation, and for units of names that the claim does not have.
     """
     if relation[0] != "==":
-        raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    matrices = [matrix for matrix in map(_matrix_given, assume) if matrix is not None]
-    assume = [text for text in assume if _matrix_given(text) is None]
-    define = [*_with_entries(matrices, relation), *define]
-    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
+        instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
+        raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
+    words = {name for name in names if len(name) > 1 and name.isalpha()}
+    matrices = {source: _matrix_given(source, words) for source in assume}
+    assume = [source for source in assume if matrices[source] is None]
+    define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
+    hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
     if (unit := imaginary_unit([*relation[1:], *context])) is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
@@ -328,9 +334,16 @@ def claim_of_relation(
     )
 
 
-def _matrix_given(source: str) -> tuple[str, Node] | None:
+def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
+    """Return hypotheses in which a name with a rate in one of them is a function of time in all of them."""
+    nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
+    rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
+    return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
+
+
+def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
     """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
-    sign, left, right = _hypothesis(source, "given")
+    sign, left, right = _hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and (shape_of(right, {}) or (0, 0))[1] > 1
     return (str(left.value), right) if is_definition else None
 
@@ -390,7 +403,11 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
         vectors=(*arrays.vectors, *columns),
         notes=(
             *arrays.notes,
-            *(f"{name} is a 3 x 3 matrix with the entries {name}_11, {name}_12 and so on" for name in matrices),
+            *(
+                f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
+                f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+                for name in matrices
+            ),
         ),
     )
 
@@ -580,11 +597,19 @@ def is_latex(source: str) -> bool:
 
 
 def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names f that occur as ``f(t)`` in hypotheses."""
+    """Return the names f that occur as ``f(t)`` in hypotheses, or with a rate."""
+    sides = [
+        side
+        for source in assume
+        for side in (
+            read_latex(source, "given").relation[1:]
+            if is_latex(source)
+            else [side for chain in readings_of(source, "given")[0].lines for side in chain.sides]
+        )
+    ]
     return {
-        node.value
-        for relation in (_hypothesis(text, "given") for text in assume)
-        for side in relation[1:]
+        str(node.value)
+        for side in sides
         for _, node in walk(side)
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
     }

@@ -3,6 +3,7 @@
 Every divisor and every formula under a root is recorded before SymPy can cancel it.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -61,6 +62,14 @@ def _sqrt(scope: Scope, node: Node) -> Expr:
     value = scope.argument(node.args[0], "under the root")
     scope.take_root(value, node.args[0])
     return sympy.sqrt(value)
+
+
+def _abs(scope: Scope, node: Node) -> Expr:
+    """Return the absolute value of a scalar, or the length of a column."""
+    value = scope.evaluate(node.args[0])
+    if is_matrix(value) and value.cols == 1:
+        return sympy.sqrt(value.dot(value))
+    return _of_scalar(sympy.Abs)(scope, node)
 
 
 def _atan2(scope: Scope, node: Node) -> Expr:
@@ -322,6 +331,31 @@ def _integrate(scope: Scope, node: Node) -> Any:
     return total
 
 
+COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
+"""Names of the coordinates of a point of a body."""
+
+
+def _integral_over_body(scope: Scope, node: Node) -> Any:
+    """Return an integral over a body that is not described: a number of its own for each product of coordinates."""
+    value = scope.evaluate(node.args[0])
+    scope.shape(value, node.args[0])
+    if is_matrix(value):
+        return value.applyfunc(lambda entry: _sum_of_moments(scope, node, entry))
+    return _sum_of_moments(scope, node, value)
+
+
+def _sum_of_moments(scope: Scope, node: Node, value: Expr) -> Expr:
+    coordinates = [symbol for symbol in sorted(value.free_symbols, key=str) if COORDINATES.fullmatch(str(symbol))]
+    if not value.is_polynomial(*coordinates):
+        raise scope.fail(node.args[0], "a polynomial in the coordinates x, y, z under an integral over a body")
+    terms = sympy.Poly(value, *coordinates).terms() if coordinates else [((), value)]
+    total = []
+    for powers, factor in terms:
+        name = "".join(str(symbol) * power for symbol, power in zip(coordinates, powers, strict=True))
+        total.append(factor * sympy.Symbol(f"integral_{name or 1}", real=True))
+    return sympy.Add(*total)
+
+
 BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "sqrt": (1, 1, _sqrt),
     "sin": (1, 1, _of_scalar(sympy.sin)),
@@ -339,9 +373,10 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "sinh": (1, 1, _of_scalar(sympy.sinh)),
     "cosh": (1, 1, _of_scalar(sympy.cosh)),
     "tanh": (1, 1, _of_scalar(sympy.tanh)),
-    "abs": (1, 1, _of_scalar(sympy.Abs)),
+    "abs": (1, 1, _abs),
     "diff": (2, 9, _diff),
     "integrate": (2, 9, _integrate),
+    "integral_over_body": (1, 1, _integral_over_body),
     "Matrix": (1, 1, _matrix),
     "eye": (1, 1, _eye),
     "diag": (1, LARGEST_MATRIX, _diag),

@@ -168,6 +168,8 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 def _is_list_of_names(tree: Node) -> bool:
     """Return whether a tree is a vector or matrix of names and rates alone."""
     is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
+    if tree.kind == "list" and len(tree.args) == 2 and tree.args[0] == number(0):
+        return _is_name(tree.args[1])  # the quaternion (0, v)
     return is_list and all(_is_name(part) or _is_rate(part) or _is_list_of_names(part) for part in tree.args)
 
 

@@ -60,7 +60,7 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
     if name in ("eye", "diag"):
         count = len(node.args) if name == "diag" else node.args[0].value
         return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
-    if name in ("diff", "inverse", "adjugate", "integrate"):
+    if name in ("diff", "inverse", "adjugate", "integrate", "integral_over_body"):
         return inner[0]
     if name == "transpose":
         return inner[0] and (inner[0][1], inner[0][0])

@@ -1,5 +1,7 @@
 """Functions, roots, fractions, derivatives and integrals in LaTeX."""
 
+from itertools import takewhile
+
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
@@ -163,7 +165,20 @@ class CalculusPart(NamesPart):
             self.index += 3
         return derivative
 
+    def over_body(self) -> Node:
+        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe."""
+        self.script("_")
+        self.integrals += 1
+        integrand = number(1) if self.differential() else self.expression()
+        self.integrals -= 1
+        if not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        self.index += 2
+        return Node("call", "integral_over_body", (integrand,))
+
     def integral(self, sign: tree.Node) -> Node:
+        if not self.has_limits():
+            return self.over_body()
         limits = [(self.limit("_"), self.limit("^"))]
         while self.take("\\int"):
             limits.append((self.limit("_"), self.limit("^")))
@@ -177,6 +192,13 @@ class CalculusPart(NamesPart):
             self.next()
             ranges.append(Node("list", ("(", ")"), (self.base(self.next()), lower, upper)))
         return Node("call", "integrate", (integrand, *ranges))
+
+    def has_limits(self) -> bool:
+        """Return whether limits follow an integral sign; the name of a body under it is no limit."""
+        lower = self.peek()
+        marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
+        is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")
+        return bool(marks) and not (is_body and "^" not in marks)
 
     def limit(self, mark: str) -> Node:
         limit = self.script(mark)

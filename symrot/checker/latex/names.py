@@ -20,9 +20,12 @@ SPELLED = {
 }  # fmt: skip
 """Name in upright letters -> the function that it means."""
 
+PART = "1:3"
+"""The subscript of the vector part of a quaternion with the components q_1, q_2, q_3."""
+
 MARKS_IN_SUBSCRIPTS = {
     "+": "plus", "-": "minus", "*": "star", "\\ast": "star", "\\perp": "perp", "\\parallel": "par", "\\|": "par",
-    "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", "\\rm": "", "\\circ": "circ",
+    "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", ":": ":", "\\rm": "", "\\circ": "circ",
 }  # fmt: skip
 """Mark in a subscript -> the letters for it in a name."""
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
@@ -73,6 +76,9 @@ class NamesPart(SumsPart):
                 primes = len(mark.inside.text)
             else:
                 subscript = self.subscript(mark)
+        if subscript == PART:
+            entries = tuple(Node("name", self.resolved(name, digit)) for digit in "123")
+            return Node("call", "Matrix", (Node("list", ("[", "]"), entries),))
         known = self.resolved(name, subscript)
         if known.partition("_prime")[0] in ROTATIONS and self.at("(") and known not in self.names:
             known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
@@ -195,6 +201,8 @@ class NamesPart(SumsPart):
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
         node = self.under(mark, self.symbol)
+        if node.kind == "call" and node.value == "Matrix":
+            return node
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:

@@ -112,7 +112,7 @@ def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> R
     sides, vectors = without_marks(timed, reader.vectors)
     remaining = iter([read_expression(text(side)) for side in sides])
     return Reading(
-        tuple(Chain(tuple(signs), tuple(next(remaining) for _ in own)) for signs, own in lines),
+        tuple(Chain(tuple(signs), tuple(next(remaining) for _ in own), reader.both_signs) for signs, own in lines),
         plain=True,
         doubts=tuple(reader.doubts),
         notes=(*dict.fromkeys(reader.notes), *_on_constants(sides, vectors)),

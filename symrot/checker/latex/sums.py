@@ -53,7 +53,8 @@ class SumsPart(Cursor):
     """The methods of the LaTeX reader that read sums, products, powers, brackets and matrices."""
 
     vector: Callable[[str], Node]
-    """Return the name of a vector; a further part defines it."""
+    named: Callable[[str, Any], Node]
+    """The methods of a further part that return the name of a vector, and read what follows a name."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
@@ -261,10 +262,11 @@ class SumsPart(Cursor):
             return None
         if end == 1 and (isinstance(after, tree.Script) and tree.alone(after.inside).text in ("\\times", "×")):
             return None
+        item = self.peek()
         self.index += end + 1
         if end > 1:
             self.notes.append(f"[{name}] is read as the name of one matrix, not as a product")
-        return Node("name", name)
+        return self.named(name, item)
 
     def bracket(self, opening: tree.Node) -> Node:
         if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
