@@ -106,6 +106,7 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
+        left = _without_backticks(left)
         if is_latex(left):
             return _on_latex(left, assume, units, repair)
         return verdict_on_text(left, assume, units, repair)
@@ -125,6 +126,12 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         decision = unfinished()
     verdict = verdict_of_decision(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
+
+
+def _without_backticks(source: str) -> str:
+    """Return a text without the backticks around it, with which posts mark formulas."""
+    bare = source.strip()
+    return bare.strip("`") if len(bare) > 1 and bare[0] == bare[-1] == "`" else source
 
 
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:

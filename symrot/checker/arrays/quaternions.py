@@ -14,6 +14,9 @@ __all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
 
 TIME = Node("name", "t")
 CONJUGATE, PRODUCT = "conjugate", "qmul"
+UNITS = {"i": 1, "j": 2, "k": 3}
+"""Name of a unit -> its place among the components."""
+
 ENDINGS = ("_vec", "_v", "v")
 """Endings of a name for the vector part of a quaternion."""
 
@@ -46,6 +49,8 @@ def used_quaternions(
     known : collection of str
     """
     sign, *sides = relation
+    if _has_units(sides, (*vectors, *known)):
+        return _of_units(relation)
     names = _quaternion_names(sides, vectors, shapes, known)
     if not names and not any(node.value == CONJUGATE for side in sides for _, node in walk(side)):
         return Quaternions(relation)
@@ -64,6 +69,34 @@ def used_quaternions(
     parts = dict(definitions).get(first)
     notes = [f"{first} is a quaternion with the scalar part {first}_0 and Hamilton's product"] if parts else []
     return Quaternions((sign, lefts, rights), tuple(definitions), tuple(reader.pure), tuple(notes))
+
+
+def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
+    """Return whether a claim is one on the units i, j and k alone, as ``i² = j² = -1`` and ``i j = k``."""
+    nodes = [node for side in sides for _, node in walk(side)]
+    names = {str(node.value) for node in nodes if node.kind == "name"}
+    squares = any(node.kind == "power" for node in nodes)
+    plain = {node.kind for node in nodes} <= {"name", "number", "neg", "product", "power", "sum"}
+    return plain and bool(names) and names <= {*UNITS} - {*others} and (len(names) > 1 or (squares and names != {"i"}))
+
+
+def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
+    """Return a relation of the units i, j and k as one of quaternions."""
+    sign, left, right = relation
+    reader = _Products(tuple(UNITS), set())
+    sides = [reader.read(_without_squares(side)) for side in (left, right)]
+    first, second = _of_one_shape(sides, reader.shapes({}))
+    used = {str(node.value) for side in (first, second) for _, node in walk(side) if node.kind == "name"}
+    definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
+    note = "i, j and k are the units of quaternions, with i j = k"
+    return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
+
+
+def _without_squares(node: Node) -> Node:
+    args = tuple(map(_without_squares, node.args))
+    if node.kind == "power" and args[1] == number(2):
+        return product([args[0], args[0]], node.span)
+    return replace(node, args=args)
 
 
 def quaternion_product(left: Node, right: Node) -> Node:

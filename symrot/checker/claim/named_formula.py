@@ -66,7 +66,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
-    if is_condition or _has_own_angle(left, right, generic):
+    if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None
@@ -163,6 +163,17 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
     ]
     vectors = {str(node.value) for node in nodes if node.kind == "name"} & {*generic}
     return len(scalars) == len(angles) == 1 and len(vectors) > 1
+
+
+def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
+    """Return whether a side has the derivative of a name without a definition by another quantity than the time."""
+    for side in (left, right):
+        for _, node in walk(side):
+            if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
+                name, *variables = node.args
+                if name.value not in known and name not in variables and any(v.value != "t" for v in variables):
+                    return True
+    return False
 
 
 def _is_list_of_names(tree: Node) -> bool:

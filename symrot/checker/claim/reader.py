@@ -14,6 +14,7 @@ from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number
+from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
@@ -30,6 +31,9 @@ MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
 """The most readings of one text that are tried, and the most places with two readings that are looked at."""
+
+FIRST_AND_LAST = ("i", "f")
+"""Indices of the first and last value of a quantity."""
 
 Relation = tuple[str, Node, Node]
 
@@ -116,7 +120,7 @@ class Reading:
 class _Text:
     """The tokens of a text, with the functions that interpret them."""
 
-    def __init__(self, source: str, where: str, declared: Declared) -> None:
+    def __init__(self, source: str, where: str, declared: Declared, numbers: bool = True) -> None:
         self.source, self.where, self.declared = source, where, declared
         prefix = f"{where}: " if where else ""
         if not isinstance(source, str):
@@ -125,7 +129,13 @@ class _Text:
             raise InputError(f"{prefix}expected a formula, got empty text")
         if len(source) > LONGEST_TEXT:
             raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-        self.tokens, self.totals = _without_totals(list(tokens_of(source, where)))
+        self.copied = without_surroundings(source, numbers)
+        tokens = list(tokens_of(self.copied.text, where))
+        if (place := self.copied.where) >= 0:  # a clause after "where" defines names of the formula before it
+            clauses = [token for token in tokens[:-1] if token.start >= place]
+            end = Token("mark", ";", place, place)
+            tokens = [*clauses, *([end] if clauses else []), *tokens[: len(tokens) - 1 - len(clauses)], tokens[-1]]
+        self.tokens, self.totals = _without_totals(tokens)
         if len(self.tokens) > MOST_PIECES:
             raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
 
@@ -176,8 +186,8 @@ class _Text:
             notes += [note for note in parser.notes if note not in notes]
             timed |= parser.timed
             differentiated |= parser.differentiated
-        notes += [note for note in self.totals if note not in notes]
-        plain |= bool(self.totals)
+        notes += [note for note in (*self.totals, *self.copied.notes) if note not in notes]
+        plain |= bool(self.totals) or self.copied.text != self.source
         constants = differentiated - timed
         if constants and len(constants) < len(differentiated):
             doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
@@ -283,6 +293,8 @@ class _Text:
             before, first, second, after = padded[place], *tokens[place : place + 3]
             greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
             whole = (before is None or first.breaks) and after.text in SIGNS
+            if greek and second.tight and second.text in FIRST_AND_LAST and self.has_first_and_last(first.text):
+                whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
             doubt = Doubt(("index", first.start), self.source[first.start : second.end])
@@ -291,6 +303,13 @@ class _Text:
                 merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
                 tokens[place : place + 2] = [merged]
         return tokens
+
+    def has_first_and_last(self, letter: str) -> bool:
+        """Return whether a text has ``ωi`` and ``ωf``, the first and last value, and no i or f by itself."""
+        pairs = list(pairwise(self.tokens))
+        after = {second.text for first, second in pairs if first.text == letter and second.tight}
+        alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
+        return {*FIRST_AND_LAST} <= after and not alone & {*FIRST_AND_LAST}
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
         """Yield the tokens of each line.
@@ -489,7 +508,15 @@ def readings_of(source: str, where: str = "", declared: Declared | None = None) 
     >>> [text(reading.relation[2]) for reading in readings_of("T = 1/2m v^2")]
     ['1/2*m*v**2', '1/(2*m)*v**2']
     """
-    return list(_readings(_Text(source, where, declared or Declared()), False))
+    text = _Text(source, where, declared or Declared())
+    readings = list(_readings(text, False))
+    if text.copied.numbers:
+        try:
+            others = _readings(_Text(source, where, declared or Declared(), numbers=False), False)
+        except InputError:
+            return readings
+        readings += [replace(reading, flipped=text.copied.numbers) for reading in others]
+    return distinct_readings(readings)
 
 
 def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:

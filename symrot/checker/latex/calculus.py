@@ -110,6 +110,23 @@ class CalculusPart(NamesPart):
             return product([*digits])
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
+    def leibniz(self) -> Node | None:
+        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``; None for any other text."""
+        texts = [item.text for item in self.items[self.index : self.index + 8]]
+        slash = texts.index("/") if "/" in texts else 0
+        below = self.index + slash + 1
+        if not is_d(self.peek()) or slash < 2 or not is_d(self.peek(slash + 1)) or self.items[below + 1].text != "t":
+            return None
+        item = self.next()
+        order = self.order()
+        operand = self.base(self.next())
+        if not self.take("/"):
+            raise self.fail("one name between d and /dt, or \\frac{d}{dt}(..)")
+        self.index += 2
+        if self.order() != order:
+            raise self.fail(f"a derivative of order {order} both above and below the slash", item)
+        return self.derivative(operand, order, item)
+
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
         """Read a derivative written as a fraction: ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``."""
         order, operand = self.inside(fraction.above, self.differentiated)

@@ -28,6 +28,13 @@ TEXT_FONTS = ("\\text", "\\mbox", "\\textrm")
 JOINTS = ("and", "or", "where", "with", "so that", "thus", "hence", "i.e", "if", "for", "when", "since", "so")
 """Fonts of the text around a formula, and words there between two equations."""
 
+_COMMANDS = {character: f"\\{name}" for name, character in GREEK.items()} | {
+    "π": "\\pi",
+    "φ": "\\phi",
+    "ε": "\\epsilon",
+}
+"""Greek letter -> its command."""
+
 WRAPPERS = (
     ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
     *((f"\\begin{{{name}}}", f"\\end{{{name}}}") for name in ("equation*", "equation", "displaymath", "math")),
@@ -117,7 +124,10 @@ class Cursor(cursor.Cursor):
         self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
         self.notes: list[str] = []
         self.crossed: set[str] = set()  # names without a mark that are vectors by their use
-        pieces = expanded(tokens(source, *_unwrapped(source)), source, where)
+        pieces = [
+            piece._replace(kind="command", text=_COMMANDS[piece.text]) if piece.text in _COMMANDS else piece
+            for piece in expanded(tokens(source, *_unwrapped(source)), source, where)
+        ]
         if {"\\pm", "\\mp"} & {piece.text for piece in pieces}:
             if flips is None:
                 sign = next(piece for piece in pieces if piece.text in ("\\pm", "\\mp"))
@@ -128,7 +138,9 @@ class Cursor(cursor.Cursor):
             if piece.text == "." and after.kind in ("line", "close", "space"):
                 continue  # the end of a line
             if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
-                raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
+                instead = "the difference of two values instead of \\left. .. \\right|"
+                expected = instead if piece.kind == "left" else "LaTeX of mathematics"
+                raise complaint(source, where, source.index(piece.text, piece.start), expected)
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
         self.frames = _frames(pieces)
@@ -187,6 +199,8 @@ def _unwrapped(source: str) -> tuple[int, int]:
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
             inside = source[start + len(opening) : end - len(closing)]
-            end = start + len(opening) + len(inside.rstrip(whitespace + ".,;"))
-            start = end - len(inside.rstrip(whitespace + ".,;").lstrip())
+            shorter = inside.rstrip(whitespace + ".,;")
+            shorter = inside[: len(shorter) + shorter.endswith("\\")]  # \\, is a space
+            end = start + len(opening) + len(shorter)
+            start = end - len(shorter.lstrip())
     return start, end

@@ -46,6 +46,9 @@ DROPPED = {
 BRACED = ("\\underbrace", "\\overbrace")
 """Commands after which an index or power is a remark on the formula, not a part of it."""
 
+LONGEST_NUMBER = 8
+"""The most tokens that are looked at for the number of an equation."""
+
 INSTEAD = {
     **dict.fromkeys(("\\SI", "\\si", "\\unit"), "the number without its unit"),
     **dict.fromkeys(("\\approx", "\\simeq"), "'=' with the digits that you know"),
@@ -95,13 +98,28 @@ class _Expansion:
         while self.place < len(self.pieces):
             piece = self.pieces[self.place]
             self.place += 1
-            if piece.text in DROPPED:
+            if piece.kind == "group" and self.at("\\bf", "\\boldmath"):  # {\\bf a}
+                self.place += 1
+                yield Token("font", "\\mathbf", piece.start)
+                yield piece
+            elif piece.text in ("\\quad", "\\qquad") and (length := self.equation_number()):
+                self.place += length
+            elif piece.text in DROPPED:
                 for _ in range(DROPPED[piece.text]):
                     self.argument(piece)
             elif piece.kind != "command" or piece.text not in MACROS:
                 yield piece
             else:
                 yield from self.longer(piece)
+
+    def equation_number(self) -> int:
+        r"""Return how many tokens the number of the equation has, as in ``a = b \qquad (5.12)``; 0 without one."""
+        rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
+        texts = [piece.text for piece in rest]
+        end = texts.index(")") if texts[:1] == ["("] and ")" in texts[:-1] else 0
+        inside = rest[1:end]
+        is_number = all(piece.kind == "number" or piece.text in ".-" for piece in inside)
+        return end + 1 if inside and is_number and rest[end + 1].kind in ("end", "line", "close") else 0
 
     def longer(self, command: Token) -> Iterator[Token]:
         """Yield the tokens of the longer form of a command, whose arguments follow."""

@@ -54,7 +54,8 @@ class SumsPart(Cursor):
 
     vector: Callable[[str], Node]
     named: Callable[[str, Any], Node]
-    """The methods of a further part that return the name of a vector, and read what follows a name."""
+    leibniz: Callable[[], Node | None]
+    """The methods of further parts that return the name of a vector, and read what follows a name, and ``dx/dt``."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
@@ -183,6 +184,8 @@ class SumsPart(Cursor):
 
     def factor(self) -> Node:
         """Read one factor with its exponents."""
+        if self.flips is not None and (derivative := self.leibniz()) is not None:
+            return derivative
         item = self.next()
         node = self.base(item)
         while raised := self.script("^"):

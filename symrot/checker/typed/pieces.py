@@ -76,7 +76,7 @@ class PiecesPart(OpenFunctionsPart):
     def is_star(self) -> bool:
         """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows."""
         after = self.token(1)
-        ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘")
+        ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
         return not self.token().spaced and (
             after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))
         )

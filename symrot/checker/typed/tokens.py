@@ -129,7 +129,8 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
 
 def without_dots(name: str) -> str:
     """Return a name as it is typed, without the dots over it."""
-    return "".join(part for part in unicodedata.normalize("NFD", name) if part not in _DOTS)
+    parts = (_ALIKE.get(part, part) for part in unicodedata.normalize("NFD", name))
+    return "".join(part for part in parts if part not in _DOTS)
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
@@ -244,6 +245,8 @@ def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
         word, stop = f"{word}_{component[0]}", component.end()
     elif word == "Delta" and text[stop : stop + 1].isascii() and text[stop : stop + 1].isalpha():
         word, stop = f"{word}_{text[stop]}", stop + 1
+    elif word == "Delta" and text[stop : stop + 1] in LETTERS:
+        word, stop = f"{word}_{LETTERS[text[stop]]}", stop + 1
     yield "name", word, stop
     if primes:
         yield "prime", primes[0], stop
