@@ -4,6 +4,7 @@ A sentence reports each reading with another verdict. A chain ``a = b = c`` is d
 one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -26,6 +27,8 @@ WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "r
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
 
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
+
+INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
 
 NAMING = ("definition", "recognised")
 
@@ -137,8 +140,18 @@ def _differs(echo: str, source: str) -> bool:
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
+        verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
     return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+
+
+def _has_indices(claim: Claim) -> bool:
+    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: one name has two indices of others."""
+    assert claim.relation is not None
+    names = {name for side in claim.relation[1:] for name in _names(side)}
+    pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
+    return any(f"_{index}" in name[-2:] for pair in pairs for index in pair for name in names)
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:

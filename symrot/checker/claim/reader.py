@@ -415,7 +415,7 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
     others, notes = [], []
     for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
         is_sum = token.kind == "sum" or (token.kind, token.text) == ("name", "sum")
-        if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+)?", after.text):
+        if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+|[A-Za-z0-9])?", after.text):
             notes.append(f"the sum of {after.text} is read as one quantity, the total")
         else:
             others.append(token)
