@@ -11,8 +11,8 @@ __all__ = ["functions", "help_text", "markdown_table", "tables"]
 
 INTRODUCTION = """\
 Three notations are read: SymPy's text, LaTeX (text with a backslash, a brace or a dollar sign), and plain text as
-people type it. SymPy's text, with ** and ==, has one meaning and keeps it. A text with two readings gets the verdict on the
-usual one, and a note on the other one if its verdict differs."""
+people type it. SymPy's text, with ** and ==, has one meaning and keeps it. A text with two readings gets the
+verdict on the usual one, and a note on the other one if its verdict differs."""
 
 BUDGET = """\
 Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is refused, or undecided for this

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+from symrot.checker.arrays.matrices import as_rotations
 from symrot.checker.claim.claims import Claim, functions_of_time
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
@@ -140,10 +141,25 @@ def _differs(echo: str, source: str) -> bool:
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
     return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+
+
+def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations."""
+    definitions, names = as_rotations(claim.define)
+    if not names:
+        return verdict
+    other = check_claim(replace(claim, define=tuple(definitions)), repair=False)
+    if other.verdict != "true":
+        return verdict
+    conditions = tuple(f"{name} is a rotation" for name in names)
+    return replace(
+        other, verdict="conditional", conditions=conditions, requires=conditions, counterexample=verdict.counterexample
+    )
 
 
 def _has_indices(claim: Claim) -> bool:

@@ -6,22 +6,40 @@ with a transpose is a column.
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from symrot.checker.claim.shapes import Shape, shape_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import is_tensor
 
-__all__ = ["matrix_of_entries", "used_columns", "used_matrices", "with_lengths"]
+__all__ = ["as_rotations", "bold_matrices", "matrix_of_entries", "used_columns", "used_matrices", "with_lengths"]
 
 OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
 UNIT_NAMES = ("I", "E", "I_3", "E_3")
 COLUMN = (3, 1)
 
 
-def matrix_of_entries(name: str) -> Node:
-    """Return the tree of a matrix with the entries A_11, A_12 and so on."""
-    rows = [[Node("name", f"{name}_{i}{j}") for j in "123"] for i in "123"]
+TIME = Node("name", "t")
+
+
+def matrix_of_entries(name: str, timed: bool = False) -> Node:
+    """Return the tree of a matrix with the entries A_11, A_12 and so on, which depend on time if it is ``timed``."""
+    kind, args = ("call", (TIME,)) if timed else ("name", ())
+    rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
+
+
+def as_rotations(definitions: Sequence[tuple[str, Node]]) -> tuple[list[tuple[str, Node]], list[str]]:
+    """Return definitions in which each matrix of 3 x 3 entries is a rotation about any axis, and these matrices."""
+    names = [name for name, tree in definitions if tree == matrix_of_entries(name)]
+    made = [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
+    return made, names
+
+
+def _rotation(name: str) -> Node:
+    """Return the tree of the product of three rotations about z, x and z."""
+    turns = [Node("call", f"R{axis}", (Node("name", f"{name}_angle{n}"),)) for n, axis in enumerate("zxz", 1)]
+    return Node("product", None, tuple(turns))
 
 
 def _list(members: Sequence[Node]) -> Node:
@@ -44,6 +62,32 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
                     if leaf[0].isupper() and leaf not in known and not is_unit:
                         names[leaf] = None
     return tuple(names)
+
+
+def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
+    """Return which of the names of vectors, in capital letters, are matrices, and whether they depend on time.
+
+    They are on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``.
+    """
+    matrices: dict[str, bool] = {}
+    nodes = [node for side in sides for _, node in walk(side)]
+    for node in nodes:
+        for first, second in pairwise(node.args if node.kind == "product" else ()):
+            name = _name_of_array(first)
+            if name[:1].isupper() and name in vectors and not is_tensor(name) and _is_array(second, vectors):
+                rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
+                matrices[name] = name in rates
+    return matrices
+
+
+def _name_of_array(node: Node) -> str:
+    """Return the name A of A, A^T, A^-1 and of the rate of A; an empty text for any other formula."""
+    inner = node.args[0] if node.kind in ("transpose", "power") or node.value == "diff" else node
+    return str(inner.value) if inner.kind == "name" else ""
+
+
+def _is_array(node: Node, vectors: Collection[str]) -> bool:
+    return _name_of_array(node) in vectors or (node.kind == "call" and node.value in ("skew", "cross"))
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:

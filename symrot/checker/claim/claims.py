@@ -14,7 +14,7 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
-from symrot.checker.arrays.matrices import matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
@@ -287,6 +287,10 @@ def claim_of_relation(
     if (unit := imaginary_unit([*relation[1:], *context])) is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
+    vectors = [vector for vector in vectors if vector.name not in bold]
+    define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
+    notes = [*notes, *map(_on_matrix, bold)]
     arrays = _with_arrays(relation, vectors, define)
     relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
     vectors = [*vectors, *map(Vector, arrays.vectors)]
@@ -403,12 +407,16 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
         vectors=(*arrays.vectors, *columns),
         notes=(
             *arrays.notes,
-            *(
-                f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
-                f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
-                for name in matrices
-            ),
+            *map(_on_matrix, matrices),
         ),
+    )
+
+
+def _on_matrix(name: str) -> str:
+    """Return the note on a name that is read as a matrix."""
+    return (
+        f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
+        f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
     )
 
 

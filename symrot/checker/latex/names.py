@@ -66,6 +66,8 @@ class NamesPart(SumsPart):
 
     def named(self, name: str, item: tree.Node) -> Node:
         """Read the subscript, primes and ``(t)`` that follow a name; return the tree of the whole name."""
+        if name == "Sigma" and self.peek().text.removeprefix("\\") in TOTALS and self.flips is not None:
+            return self.total(item)
         if name in ("Delta", "delta") and name not in self.names and not self.at("_", "'"):
             follower = self.peek()
             if is_letter(follower):

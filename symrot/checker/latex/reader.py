@@ -252,9 +252,9 @@ class _Interpreter(CalculusPart):
                 return lines
             if not (between and (self.at(*between) or self.is_joint())):
                 raise self.fail("an operator or the end")
-            while self.at(*between) or self.is_joint():
+            while (self.at(*between) or self.is_joint()) and not self.is_remark():
                 self.next()
-            if self.peek().kind == "end":
+            if self.peek().kind == "end" or self.is_remark():
                 return lines
             line = None
 

@@ -61,6 +61,7 @@ def without_surroundings(source: str, numbers: bool = True) -> Copied:
     if (match := _WHERE.search(text)) and "=" in text[: match.start()]:
         where = match.start()
         rest, left_out = _clauses(text[match.end() :])
+        rest = rest if "=" in rest else " " * len(rest)
         text = text[:where] + " " * (match.end() - where) + rest
         notes += [f"{clause!r} is not read" for clause in left_out]
     if text.count("=") > 1:

@@ -63,6 +63,14 @@ def test_a_given_matrix_replaces_the_entries():
     assert any("R is any 3 x 3 matrix" in note and "--given" in note for note in verdict.notes)
 
 
+@pytest.mark.parametrize("claim", [
+    "R a x R b = R (a x b)", r"\mathbf R\mathbf a\cdot\mathbf R\mathbf b = \mathbf a\cdot\mathbf b",
+])  # fmt: skip
+def test_what_holds_for_rotations_only_is_conditional(claim):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.requires) == ("conditional", ("R is a rotation",))
+
+
 def test_names_with_rates_in_hypotheses_are_functions_of_time_in_the_claim():
     rates = ["I_1 ω_1' = (I_2 - I_3) ω_2 ω_3", "I_2 ω_2' = (I_3 - I_1) ω_3 ω_1", "I_3 ω_3' = (I_1 - I_2) ω_1 ω_2"]
     assert symrot.check("d/dt (I_1 ω_1² + I_2 ω_2² + I_3 ω_3²) = 0", assume=rates).verdict == "true"
