@@ -73,7 +73,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
     apart = all(letters) and not letters[0] & letters[1] and _says_something(claim, left, right)
-    if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
+    if any(is_matrix(side) and side.shape != (1, 1) for side in (claim.equation.left, claim.equation.right)):
         if (solved := _solved_for_vector(claim, left, right)) is not None:
             return solved
         if _equation_of_motion(left, right) is not None:

@@ -150,14 +150,18 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
-    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero."""
+    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero.
+
+    In ``w.T*J*w`` J is a tensor too.
+    """
     for side in sides:
         for _, node in walk(side):
             factors: Sequence[Node] = ()
             if node.kind == "call" and node.value == "cross" and node.args[1].kind == "product":
                 factors = (node.args[0], *node.args[1].args)
             elif node.kind == "product":
-                factors = [f.args[0] if f.kind == "call" and f.value == "skew" else f for f in node.args]
+                wrapped = [f.kind == "transpose" or (f.kind == "call" and f.value == "skew") for f in node.args]
+                factors = [f.args[0] if inside else f for f, inside in zip(node.args, wrapped, strict=True)]
             for before, name, after in zip(factors, factors[1:], factors[2:], strict=False):
                 if name.kind == "name" and before == after and is_tensor(str(name.value)):
                     yield str(name.value)

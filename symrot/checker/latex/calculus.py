@@ -195,6 +195,8 @@ class CalculusPart(NamesPart):
 
     def integral(self, sign: tree.Node) -> Node:
         if not self.has_limits():
+            while self.take("\\int"):
+                pass  # \\iiint_V
             return self.over_body()
         limits = [(self.limit("_"), self.limit("^"))]
         while self.take("\\int"):

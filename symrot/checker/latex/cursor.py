@@ -1,5 +1,6 @@
 """The cursor of the LaTeX checker: the place in a formula, with the names that its claim declares."""
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from string import whitespace
@@ -124,9 +125,13 @@ class Cursor(cursor.Cursor):
         self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
         self.notes: list[str] = []
         self.crossed: set[str] = set()  # names without a mark that are vectors by their use
+        start, stop = _unwrapped(source)
+        outside = (source[:start] + source[stop:]).strip(whitespace + "$.,;\\[]()")
+        if outside and "begin{" not in outside:
+            self.notes.append("the words around the formula are not read")
         pieces = [
             piece._replace(kind="command", text=_COMMANDS[piece.text]) if piece.text in _COMMANDS else piece
-            for piece in expanded(tokens(source, *_unwrapped(source)), source, where)
+            for piece in expanded(tokens(source, start, stop), source, where)
         ]
         if {"\\pm", "\\mp"} & {piece.text for piece in pieces}:
             if flips is None:
@@ -139,7 +144,8 @@ class Cursor(cursor.Cursor):
                 continue  # the end of a line
             if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
                 instead = "the difference of two values instead of \\left. .. \\right|"
-                expected = instead if piece.kind == "left" else "LaTeX of mathematics"
+                alone = "one formula, without the words around it" if piece.text == "$" else "LaTeX of mathematics"
+                expected = instead if piece.kind == "left" else alone
                 raise complaint(source, where, source.index(piece.text, piece.start), expected)
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
@@ -193,9 +199,16 @@ def _frames(pieces: Sequence[Token]) -> set[str]:
     return frames
 
 
+_INLINE = re.compile(r"\$\$.+?\$\$|(?<!\$)\$[^$]+\$(?!\$)|(?<!\\)\\\(.+?\\\)|(?<!\\)\\\[.+?\\\]", re.DOTALL)
+"""A formula between dollar signs or brackets, in a text."""
+
+
 def _unwrapped(source: str) -> tuple[int, int]:
     """Return where the formula starts and ends, without the dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
+    inside = list(_INLINE.finditer(source))
+    if len(inside) == 1 and not {"=", "<", ">"} & {*source[: inside[0].start()], *source[inside[0].end() :]}:
+        start, end = inside[0].span()
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
             inside = source[start + len(opening) : end - len(closing)]
