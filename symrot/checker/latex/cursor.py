@@ -206,9 +206,9 @@ _INLINE = re.compile(r"\$\$.+?\$\$|(?<!\$)\$[^$]+\$(?!\$)|(?<!\\)\\\(.+?\\\)|(?<
 def _unwrapped(source: str) -> tuple[int, int]:
     """Return where the formula starts and ends, without the dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
-    inside = list(_INLINE.finditer(source))
-    if len(inside) == 1 and not {"=", "<", ">"} & {*source[: inside[0].start()], *source[inside[0].end() :]}:
-        start, end = inside[0].span()
+    formulas = list(_INLINE.finditer(source))
+    if len(formulas) == 1 and not {"=", "<", ">"} & {*source[: formulas[0].start()], *source[formulas[0].end() :]}:
+        start, end = formulas[0].span()
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
             inside = source[start + len(opening) : end - len(closing)]
