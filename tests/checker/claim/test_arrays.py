@@ -33,16 +33,19 @@ OPEN = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", TRUE)
 def test_an_identity_of_arrays_is_true(claim):
     assert symrot.check(claim).verdict == "true"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", FALSE)
 def test_a_wrong_identity_of_arrays_is_false(claim):
     assert symrot.check(claim, repair=False).verdict == "false"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", OPEN)
 def test_what_depends_on_the_meaning_of_a_name_is_not_accused(claim):
     assert symrot.check(claim, repair=False).verdict in ("definition", "recognised")
