@@ -15,7 +15,7 @@ from symrot.checker.claim.claims import (
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.decide.decision import Equation, decide_equation
-from symrot.checker.text import verdict_on_reading, verdict_on_text
+from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.verdict import Verdict
@@ -106,6 +106,7 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
+        left = _without_backticks(left)
         if is_latex(left):
             return _on_latex(left, assume, units, repair)
         return verdict_on_text(left, assume, units, repair)
@@ -127,15 +128,22 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
+def _without_backticks(source: str) -> str:
+    """Return a text without the backticks around it, with which posts mark formulas."""
+    bare = source.strip()
+    return bare.strip("`") if len(bare) > 1 and bare[0] == bare[-1] == "`" else source
+
+
 def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
     """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
-    from symrot.checker.latex.reader import Names, latex_reading
+    from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.writing import LatexNotation
 
     functions = functions_of_time(assume)
-    reading = latex_reading(source, Names(functions=functions))
-    notation = LatexNotation(functions, reading.vectors)
-    return verdict_on_reading(reading, notation, source, assume, units, repair)
+    readings = latex_readings(source, Names(functions=functions))
+    return verdict_on_readings(
+        readings, lambda reading: LatexNotation(functions, reading.vectors), source, assume, units, repair
+    )
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:

@@ -4,14 +4,16 @@ A sentence reports each reading with another verdict. A chain ``a = b = c`` is d
 one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim, relation_text
+from symrot.checker.arrays.matrices import as_rotations
+from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
-from symrot.checker.claim.notation import Notation, notation_of
-from symrot.checker.claim.reader import Reading, Relation, read_relation, readings_of
+from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
+from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.tree import text as text_of
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
@@ -22,12 +24,14 @@ from symrot.checker.typed.cursor import TIME
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_reading", "verdict_on_text"]
+__all__ = ["verdict_on_readings", "verdict_on_text"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
 
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
+
+INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
 
 NAMING = ("definition", "recognised")
 
@@ -42,14 +46,30 @@ OUTCOMES = {
 def verdict_on_text(
     source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True
 ) -> Verdict:
-    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+    """Return the verdict on a text as people type it, with a note on every other reading whose verdict differs.
 
     Raises
     ------
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
-    readings = readings_of(source)
+    readings = readings_of(source, declared=Declared(functions=functions_of_time(assume)))
+    return verdict_on_readings(readings, notation_of, source, assume, units, repair)
+
+
+def verdict_on_readings(
+    readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
+    units: Mapping[str, str] | None = None, repair: bool = True,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+
+    ``notation`` returns the notation in which the formulas of a reading are written.
+
+    Raises
+    ------
+    InputError
+        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+    """
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
     late = False
@@ -58,33 +78,36 @@ def verdict_on_text(
         if late:
             break
         try:
-            verdict = verdict_on_reading(reading, notation_of(reading), source, assume, units, repair and not verdicts)
+            verdict = verdict_on_reading(reading, notation(reading), source, assume, units, repair and not verdicts)
         except InputError as reason:
             refusal = refusal or reason
             continue
         verdicts.append((reading, verdict))
-    if refusal is not None and not verdicts:
-        raise refusal
+    of_usual = readings[0] in [reading for reading, _ in verdicts]
+    if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
+        raise refusal  # an unusual reading accuses nobody
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "recognised"), 0)
     if verdicts[0][1].verdict == "definition":
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
-    if refusal is not None and readings[0] not in [reading for reading, _ in verdicts]:
+    if refusal is not None and not of_usual:
         notes.append(f"the usual reading has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:
-            notes.append(_on_reading(usual, reading, other))
+            notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
 
 
-def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
+def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
     """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
     places = reading.flipped or usual.flipped
-    changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
+    if isinstance(notation, TypedNotation):
+        notation = replace(notation, plain=usual.plain or reading.plain)
+    changed = _text_of(reading, notation)
     excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
 
@@ -119,7 +142,10 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
-    verdict = with_rounding(claim, check_claim(claim, repair))
+    verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
+        verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     repairs = tuple(_marked(repair, claim, notation) for repair in verdict.repairs)
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
@@ -164,6 +190,28 @@ def _rows(side: Node) -> list[tuple[Node, ...]] | None:
     if side.kind != "call" or side.value != "Matrix" or side.args[0].kind != "list":
         return None
     return [row.args if row.kind == "list" else (row,) for row in side.args[0].args]
+
+
+def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations."""
+    definitions, names = as_rotations(claim.define)
+    if not names:
+        return verdict
+    other = check_claim(replace(claim, define=tuple(definitions)), repair=False)
+    if other.verdict != "true":
+        return verdict
+    conditions = tuple(f"{name} is a rotation" for name in names)
+    return replace(
+        other, verdict="conditional", conditions=conditions, requires=conditions, counterexample=verdict.counterexample
+    )
+
+
+def _has_indices(claim: Claim) -> bool:
+    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: one name has two indices of others."""
+    assert claim.relation is not None
+    names = {name for side in claim.relation[1:] for name in _names(side)}
+    pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
+    return any(f"_{index}" in name[-2:] for pair in pairs for index in pair for name in names)
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:

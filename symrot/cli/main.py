@@ -6,7 +6,7 @@ Texts come from :mod:`symrot.report`. Exit codes: 0 success, 1 a check failed, 2
 
 import os
 import sys
-from argparse import ArgumentParser, HelpFormatter, Namespace
+from argparse import ArgumentParser, HelpFormatter, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -392,15 +392,10 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "claim", metavar="CLAIM", nargs="?", help="'left = right' as typed text, SymPy's text or LaTeX, or a FILE.toml"
     )
-    parser.epilog = ("Typed text: 2x, m g l and x(y + 1) are products; x^2, x², ½, √x, 45°, ω₁, φ̇, θ'' and dx/dt "
-                     "are read; sin 2x, sin^2 x and tan^-1 x need no brackets; R = [a, b; c, d] is a matrix, a × b a "
-                     "product of vectors; a = b = c is decided link by link, several lines one by one. SymPy's text, "
-                     "with ** and ==, keeps its meaning. A text with two readings, such as 1/2m or sin x y, gets the "
-                     "verdict on the usual one, and a note on the other if its verdict differs. docs/checkers.md has "
-                     "the whole language. Budget per claim: 20 000 characters and 1 000 000 products of terms; a "
-                     "claim beyond it is refused, or undecided for this reason. The budget is counted, so that all "
-                     "machines give the same verdict; only a claim for which SymPy needs more than 20 s of processor "
-                     "time is undecided because of its time.")  # fmt: skip
+    from symrot.checker.language import help_text
+
+    parser.formatter_class = RawDescriptionHelpFormatter
+    parser.epilog = help_text()
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the pages of errata")

@@ -5,7 +5,7 @@ are true.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,26 +13,28 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
+from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
+from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
     has_natural_base,
-    imaginary_letter,
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
-from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
+from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError, complaint
+from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
@@ -108,6 +110,8 @@ class Claim:
     editable : tuple of str
         The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
         the claim is measured against.
+    has_parts : bool
+        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
     """
 
     id: str = ""
@@ -125,6 +129,7 @@ class Claim:
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     editable: tuple[str, ...] = SIDES
+    has_parts: bool = False
 
     @property
     def text(self) -> str:
@@ -253,9 +258,12 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     return names
 
 
-def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
+def _hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
+    """Return a hypothesis; ``words`` are names of the claim that it holds as they are, not as products of letters."""
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
+    elif declared is None:
+        relation = read_relation(source, where, Declared(words) if words else None, rates=True)
     else:
         relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
@@ -292,27 +300,39 @@ def claim_of_relation(
         For a relation that is no equation, and for units of names that the claim does not have.
     """
     if relation[0] != "==":
-        raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    matrices = [matrix for matrix in map(_matrix_given, assume) if matrix is not None]
-    assume = [text for text in assume if _matrix_given(text) is None]
-    define = [*_with_entries(matrices, relation), *define]
-    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    relation, vectors, with_units = _with_vectors(relation, list(vectors), define)
+        instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
+        raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
+    words = {name for name in names if len(name) > 1 and name.isalpha()}
+    matrices = {source: _matrix_given(source, words) for source in assume}
+    assume = [source for source in assume if matrices[source] is None]
+    define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
+    hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
+    if (unit := imaginary_unit([*relation[1:], *context])) is not None:
+        relation = with_parts(relation, str(unit.value), source)
+        notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
+    vectors = [vector for vector in vectors if vector.name not in bold]
+    define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
+    notes = [*notes, *map(_on_matrix, bold)]
+    arrays = _with_arrays(relation, vectors, define)
+    relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
+    vectors = [*vectors, *map(Vector, arrays.vectors)]
+    vectors = [vector for vector in vectors if vector.name not in dict(define)]
+    relation, vectors, with_units = _with_vectors(relation, vectors, define)
+    relation, lengths = with_lengths(relation, _shapes(vectors, define))
+    notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
+    moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}
+    relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
     notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
-    letter = imaginary_letter(everything)
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
-        if letter is not None:
-            expected = f"real numbers (write cos(x) and sin(x) for the parts of exp({letter.value}*x))"
-            raise complaint(source, "", letter.span[0], expected)
         notes.append("e is read as the base of the exponential function")
         relation = _with_natural_base(relation)
         hypotheses = tuple(map(_with_natural_base, hypotheses))
         define = [(name, with_natural_base(tree)) for name, tree in define]
-    elif letter is not None:
-        notes.append(f"{letter.value} is read as a real symbol, not as the imaginary unit")
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
     sources |= {f"define.{n}": source for n in range(len(define))}
     trees = [
@@ -337,13 +357,21 @@ def claim_of_relation(
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
+        has_parts=unit is not None,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
 
-def _matrix_given(source: str) -> tuple[str, Node] | None:
+def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
+    """Return hypotheses in which a name with a rate in one of them is a function of time in all of them."""
+    nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
+    rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
+    return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
+
+
+def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
     """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
-    sign, left, right = _hypothesis(source, "given")
+    sign, left, right = _hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and (shape_of(right, {}) or (0, 0))[1] > 1
     return (str(left.value), right) if is_definition else None
 
@@ -368,9 +396,7 @@ def _with_vectors(
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
-    shapes: dict[str, Shape] = {}
-    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
-        shapes[name] = shape_of(tree, shapes)
+    shapes = _shapes(vectors, define)
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape
@@ -380,6 +406,47 @@ def _with_vectors(
         vectors = [*vectors, *map(Vector, new)]
         shapes |= new
     return with_units, vectors, with_units != relation
+
+
+def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> dict[str, Shape]:
+    """Return the shapes of vectors and of defined names."""
+    shapes: dict[str, Shape] = {}
+    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
+        shapes[name] = shape_of(tree, shapes)
+    return shapes
+
+
+def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
+    """Return the quaternions, matrices and columns that a relation uses without a definition, with one for each."""
+    known = {name for name, _ in define}
+    names = {vector.name for vector in vectors}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
+    known |= names | {name for name, _ in arrays.definitions}
+    matrices = used_matrices(arrays.relation[1:], known)
+    columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
+    return replace(
+        arrays,
+        definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
+        relation=_with_scalar_products(arrays.relation, columns),
+        vectors=(*arrays.vectors, *columns),
+        notes=(
+            *arrays.notes,
+            *map(_on_matrix, matrices),
+        ),
+    )
+
+
+def _on_matrix(name: str) -> str:
+    """Return the note on a name that is read as a matrix."""
+    return (
+        f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
+        f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+    )
+
+
+def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
+    sign, left, right = relation
+    return sign, with_scalar_products(left, names), with_scalar_products(right, names)
 
 
 def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
@@ -562,11 +629,19 @@ def is_latex(source: str) -> bool:
 
 
 def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names f that occur as ``f(t)`` in hypotheses."""
+    """Return the names f that occur as ``f(t)`` in hypotheses, or with a rate."""
+    sides = [
+        side
+        for source in assume
+        for side in (
+            read_latex(source, "given").relation[1:]
+            if is_latex(source)
+            else [side for chain in readings_of(source, "given")[0].lines for side in chain.sides]
+        )
+    ]
     return {
-        node.value
-        for relation in (_hypothesis(text, "given") for text in assume)
-        for side in relation[1:]
+        str(node.value)
+        for side in sides
         for _, node in walk(side)
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
     }

@@ -219,7 +219,7 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
         known = (
             f"did you mean {close[0]}?"
             if close
-            else f"for a product write {name}*(..); built in: {', '.join(BUILT_IN)}"
+            else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
         expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
         raise interpreter.fail(node, expected)

@@ -44,7 +44,7 @@ def claims_of_reading(
         first = chain.sides[0]
         reserved = ("pi", "t", *(name for name, _ in define))
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
-        if is_name and first not in [node for _, node in walk(chain.sides[1])]:
+        if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
     return lines
 

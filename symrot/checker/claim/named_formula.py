@@ -3,7 +3,7 @@
 No such claim is an identity: whether it holds depends on what its letters mean.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from fractions import Fraction
 from functools import partial, reduce
 from typing import NamedTuple
@@ -63,14 +63,17 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
     letters = [_quantities(side) for side in (left, right)]
-    if _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses)):
+    generic = {name for name, tree in claim.define if is_components(name, tree)}
+    is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
+    is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
+    if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
     apart = all(letters) and not letters[0] & letters[1] and _says_something(claim, left, right)
-    if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
+    if any(is_matrix(side) and side.shape != (1, 1) for side in (claim.equation.left, claim.equation.right)):
         if (solved := _solved_for_vector(claim, left, right)) is not None:
             return solved
         if _equation_of_motion(left, right) is not None:
@@ -141,9 +144,43 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
     return False
 
 
+def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
+    """Return whether an equation of products says what kind of matrix a single name is: ``R.T*R == eye(3)``."""
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    names = {str(node.value) for node in nodes if node.kind == "name"}
+    kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
+    of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
+    of_value = kinds <= {"name", "number", "neg", "det", "trace"}
+    return len(names) == 1 and names <= {*generic} and (of_product or of_value)
+
+
+def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
+    """Return whether a relation of vectors has a single scalar, in one sine: ``a . b = |a| |b| cos(theta)``."""
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
+    angles = [
+        node for node in nodes if node.kind == "call" and node.value in ("sin", "cos") and node.args[0] in scalars
+    ]
+    vectors = {str(node.value) for node in nodes if node.kind == "name"} & {*generic}
+    return len(scalars) == len(angles) == 1 and len(vectors) > 1
+
+
+def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
+    """Return whether a side has the derivative of a name without a definition by another quantity than the time."""
+    for side in (left, right):
+        for _, node in walk(side):
+            if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
+                name, *variables = node.args
+                if name.value not in known and name not in variables and any(v.value != "t" for v in variables):
+                    return True
+    return False
+
+
 def _is_list_of_names(tree: Node) -> bool:
     """Return whether a tree is a vector or matrix of names and rates alone."""
     is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
+    if tree.kind == "list" and len(tree.args) == 2 and tree.args[0] == number(0):
+        return _is_name(tree.args[1])  # the quaternion (0, v)
     return is_list and all(_is_name(part) or _is_rate(part) or _is_list_of_names(part) for part in tree.args)
 
 

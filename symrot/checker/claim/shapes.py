@@ -24,6 +24,8 @@ FIXED: Mapping[str, Shape] = {
     "skew": (3, 3),
     "dcm_of": (3, 3),
     "qmul": (4, 1),
+    "conjugate": (4, 1),
+    "vector_part": (3, 1),
     **dict.fromkeys(ROTATIONS, (3, 3)),
 }
 """Function -> the shape of its value."""
@@ -41,18 +43,24 @@ def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
         return matrices[0] if matrices else None
     if node.kind == "transpose":
         return (matrices[0][1], matrices[0][0]) if matrices else None
-    return _shape_of_call(node, inner) if node.kind == "call" else None
+    return _shape_of_call(node, inner, shapes) if node.kind == "call" else None
 
 
-def _shape_of_call(node: Node, inner: list[Shape]) -> Shape:
+def _shape_of_blocks(rows: Node, shapes: Mapping[str, Shape]) -> Shape:
+    """Return the shape of a matrix whose rows hold scalars or smaller matrices."""
+    lines = [row.args if row.kind == "list" else (row,) for row in rows.args]
+    cells = [[shape_of(cell, shapes) or (1, 1) for cell in line] for line in lines]
+    return sum(max(height for height, _ in line) for line in cells), sum(width for _, width in cells[0])
+
+
+def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) -> Shape:
     name = str(node.value)
-    if name == "Matrix" and node.args[0].kind == "list":
-        rows = node.args[0].args
-        return len(rows), len(rows[0].args) if rows and rows[0].kind == "list" else 1
+    if name == "Matrix" and node.args[0].kind == "list" and node.args[0].args:
+        return _shape_of_blocks(node.args[0], shapes)
     if name in ("eye", "diag"):
         count = len(node.args) if name == "diag" else node.args[0].value
         return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
-    if name in ("diff", "inverse", "adjugate"):
+    if name in ("diff", "inverse", "adjugate", "integrate", "integral_over_body"):
         return inner[0]
     if name == "transpose":
         return inner[0] and (inner[0][1], inner[0][0])

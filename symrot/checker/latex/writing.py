@@ -22,8 +22,8 @@ COMMANDS = {
 """Built-in function -> its command."""
 
 DOTS = {1: "\\dot", 2: "\\ddot", 3: "\\dddot"}
-VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot"}
-"""Product of two vectors -> its sign."""
+VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot", "qmul": "\\otimes"}
+"""Product of two vectors or quaternions -> its sign."""
 
 NO_VECTORS: Mapping[str, bool] = {}
 
@@ -117,6 +117,11 @@ def _is_rate(node: Node) -> bool:
 def _by_time_alone(node: Node) -> bool:
     """Return whether a derivative is one with respect to time, of an order that dots can show."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
+
+
+def _is_square(node: Node) -> bool:
+    """Return whether a formula is the scalar product of a formula with itself, whose root is a length."""
+    return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
 
 
 class Writer:
@@ -213,6 +218,12 @@ class Writer:
             return self.name(Node("name", name))
         if name == "diff" and [(v.kind, v.value) for v in node.args[1:]] == [("name", "t")]:
             return f"\\frac{{d}}{{dt}}({self.formula(node.args[0])})"
+        if name == "conjugate":
+            return f"{self.formula(node.args[0], ATOM)}^*"
+        if name == "sqrt" and _is_square(node.args[0]):
+            return f"\\|{self.formula(node.args[0].args[0])}\\|"
+        if name == "integrate":
+            return self.integral(node)
         if name == "sqrt":
             return f"\\sqrt{{{self.formula(node.args[0])}}}"
         if name == "skew":
@@ -229,6 +240,15 @@ class Writer:
             return self.name(Node("name", name)) + self.argument(node)
         command = COMMANDS.get(name, f"\\operatorname{{{name}}}")
         return command + self.argument(node)
+
+    def integral(self, node: Node) -> str:
+        """Return an integral, whose first range is the innermost one."""
+        integrand, *ranges = node.args
+        signs = [
+            f"\\int_{{{self.formula(place.args[1])}}}^{{{self.formula(place.args[2])}}}" for place in reversed(ranges)
+        ]
+        differentials = [f"\\,d{self.formula(place.args[0])}" for place in ranges]
+        return f"{' '.join(signs)} {self.formula(integrand, PRODUCT)} {' '.join(differentials)}"
 
     def transpose(self, node: Node) -> str:
         return f"{self.formula(node.args[0], ATOM)}^T"

@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, islice
 from typing import Any
 
-from sympy import Expr
-
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
@@ -19,7 +17,7 @@ from symrot.checker.claim.tree import text as written
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
-from symrot.checker.repair.entries import by_entries, merged
+from symrot.checker.repair.entries import by_entries
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
 from symrot.checker.repair.insertions import exchanged_definitions, missing_matrices, missing_terms
 from symrot.checker.repair.joined_pairs import joined_pairs, pair_of

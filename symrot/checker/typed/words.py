@@ -15,6 +15,7 @@ __all__ = [
     "SINGLE_ARGUMENT",
     "UNITS",
     "Shorthand",
+    "lost_power",
     "pieces_of_word",
     "shorthands",
     "split_tokens",
@@ -56,7 +57,9 @@ SCALARS = frozenset("bckmn")
 VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
 """Letters before x, y or z: of a product ``kx``, and of a component ``Fx``."""
 
-WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id", *UNITS])
+WHOLE_WORDS = frozenset(
+    [*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "dm", "id", *UNITS]
+)
 
 MOST_LETTERS = 3
 """The most letters of a product that the text does not use by themselves."""
@@ -138,6 +141,18 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
     return short
 
 
+def lost_power(word: str) -> tuple[str, ...]:
+    """Return the pieces of ``sin2`` where its raised digit was lost, as in text copied from a PDF: sin, ^ and 2.
+
+    Examples
+    --------
+    >>> lost_power("cos2"), lost_power("r2")
+    (('cos', '^', '2'), ())
+    """
+    match = re.fullmatch("(sin|cos|tan|cot)([23])", word)
+    return (match[1], "^", match[2]) if match else ()
+
+
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
     """Yield tokens, with each of the words ``words`` replaced by the tokens of the names that it consists of."""
     for token in tokens:
@@ -147,5 +162,6 @@ def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) ->
             continue
         at, spaced, breaks = token.start, token.spaced, token.breaks
         for piece in pieces:
-            yield Token("number" if piece.isdigit() else "name", piece, at, at + len(piece), spaced, breaks)
+            kind = "number" if piece.isdigit() else "mark" if piece == "^" else "name"
+            yield Token(kind, piece, at, at + len(piece), spaced, breaks)
             at, spaced, breaks = at + len(piece), False, False

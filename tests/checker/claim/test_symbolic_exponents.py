@@ -67,7 +67,6 @@ def test_wrong_towers_have_a_counterexample(claim):
 
 @pytest.mark.parametrize(("claim", "words"), [
     ("(-1)**n == 1", "a positive number"), ("0**x == 0", "a positive number"), ("Matrix([[1, x], [0, 1]])**n == eye(2)", "a number as an exponent"),
-    ("e^(iθ) = cos θ + i sin θ", "real numbers"), (r"e^{i\theta} = \cos\theta + i\sin\theta", "real numbers"),
     ("m*exp(x) == m*E**x", "means something else"),
 ])  # fmt: skip
 def test_other_exponents_are_refused(claim, words):
@@ -75,10 +74,36 @@ def test_other_exponents_are_refused(claim, words):
         symrot.check(claim)
 
 
-def test_the_letter_i_in_an_exponential_is_told():
-    verdict = symrot.check("exp(i*x) == cos(x) + i*sin(x)")
-    assert verdict.verdict == "false"
-    assert "i is read as a real symbol, not as the imaginary unit" in verdict.notes
+@pytest.mark.thinned(3)
+@pytest.mark.parametrize("claim", [
+    "e^(iθ) = cos θ + i sin θ", r"e^{i\theta} = \cos\theta + i\sin\theta", "exp(I*x) == cos(x) + I*sin(x)", "e^(iπ) + 1 = 0",
+    "(cos x + i sin x)^3 = cos 3x + i sin 3x", "cos x = (e^(i x) + e^(-i x))/2", "|e^(i x)| = 1", "e^(i x) e^(i y) = e^(i (x + y))",
+    "1/(cos x + i sin x) = cos x - i sin x", "sin(i x) e^(i y)= i sinh(x) e^(i y)", "e^(a + i b) = e^a (cos b + i sin b)",
+])  # fmt: skip
+def test_complex_formulas_are_equal_if_their_parts_are(claim):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true"
+    assert any("is the imaginary unit" in note for note in verdict.notes)
+
+
+@pytest.mark.parametrize("claim", [
+    "e^(iθ) = sin θ + i cos θ", "e^(iθ) = cos θ - i sin θ", "exp(i*x) == cos(x)", "(cos x + i sin x)^2 = cos 2x + i sin x", "e^(iπ) = 1",
+])  # fmt: skip
+def test_a_wrong_part_is_false(claim):
+    assert symrot.check(claim).verdict == "false"
+
+
+@pytest.mark.parametrize(("claim", "words"), [
+    ("log(e^(i x)) = i x", "real and imaginary parts are known"), ("(e^(i x))^y = e^(i x y)", "a whole number up to"),
+])  # fmt: skip
+def test_a_function_whose_parts_are_not_known_is_refused(claim, words):
+    with pytest.raises(InputError, match=words):
+        symrot.check(claim)
+
+
+def test_a_letter_i_that_is_no_imaginary_unit_stays_a_name():
+    assert symrot.check("x_i + i = i + x_i").verdict == "true"
+    assert symrot.check("z = r e^(i θ)").verdict == "definition"
 
 
 def test_a_wrong_power_is_repaired():
