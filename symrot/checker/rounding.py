@@ -8,7 +8,7 @@ from symrot.checker.claim.values import decide_value
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.exact.intervals import enclosure
 
-__all__ = ["with_rounding"]
+__all__ = ["right_digits", "with_rounding"]
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
@@ -44,14 +44,20 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, place: tu
     if decision.verdict == "true":
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
-    interval = enclosure(claim.interpreter().read(value))
-    places = len(digits.partition(".")[2])
-    if interval is None or "e" in digits.lower():
-        return verdict
-    right = f"{float(interval.mid):.{places}f}"
-    if decide_value(replace(worked, printed=right)).verdict != "true":
+    right = right_digits(worked, value, digits)
+    if right is None:
         return verdict
     source = claim.sources["claim"]
     repair = Repair(source[: place[0]] + right + source[place[1] :], "digits", 1.0)
     diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")
     return replace(verdict, diagnosis=diagnosis, repairs=(repair,))
+
+
+def right_digits(worked: Claim, value: Node, digits: str) -> str | None:
+    """Return the decimal number to which a value rounds, with as many places as ``digits``; None if it is not known."""
+    interval = enclosure(worked.interpreter().read(value))
+    places = len(digits.partition(".")[2])
+    if interval is None or "e" in digits.lower():
+        return None
+    right = f"{float(interval.mid):.{places}f}"
+    return right if decide_value(replace(worked, printed=right)).verdict == "true" else None
