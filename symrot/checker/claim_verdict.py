@@ -50,7 +50,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
-                named = _on_name(claim, repair, related_formula) or _on_relation(claim)
+                named = _on_name(claim, repair, related_formula) or _on_relation(claim) or _on_expanded(claim, repair)
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
@@ -102,6 +102,10 @@ def _on_name(
     start = perf_counter()
     with _place_of(claim):
         verdict = verdict_on_name(claim, named, repair)
+        if claim.context:
+            from symrot.checker.context.decision import in_context
+
+            verdict = in_context(claim, named, verdict)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 
@@ -114,6 +118,15 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
     start = perf_counter()
     verdict = verdict_on_relation(claim)
     return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
+
+
+def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
+    """Return the verdict on a claim that names a quantity if the definitions in its hypotheses are put in; or None."""
+    expanded = claim.expanded
+    if expanded is claim or expanded.hypotheses:
+        return None
+    named = _on_name(expanded, repair, related_formula) or _on_relation(expanded)
+    return None if named is None else (None, replace(named[1], text=claim.text))
 
 
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:

@@ -17,10 +17,13 @@ from symrot.checker.claim.reader import Declared, Reading, Relation, read_relati
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.tree import text as text_of
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.marks import changed_spans
+from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
+from symrot.checker.units.conversion import Measured, measured_text
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
@@ -35,6 +38,12 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 
 NAMING = ("definition", "recognised")
 
+AS_TYPED = ("degrees",)
+"""The codes of repairs that are written in the notation of the input already."""
+
+DECIDED = ("true", "false", "conditional", "undecided")
+UNUSED_CONTEXT = "the context is not used, since the formulas of the claim decide it"
+
 OUTCOMES = {
     "true": "true", "false": "false", "conditional": "true under a condition only", "undecided": "undecided",
     "recognised": "a formula that symrot derives", "doubtful": "nearly a formula that symrot derives",
@@ -44,8 +53,9 @@ OUTCOMES = {
 
 
 def verdict_on_text(
-    source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True
-) -> Verdict:
+    source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True,
+    stated: Context = NO_CONTEXT,
+) -> Verdict:  # fmt: skip
     """Return the verdict on a text as people type it, with a note on every other reading whose verdict differs.
 
     Raises
@@ -53,13 +63,20 @@ def verdict_on_text(
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
+    if (measured := measured_text(source)) is not None:
+        verdict = _on_measured(measured, source, assume, units, repair)
+        if not stated:
+            return verdict
+        stated.check_names(names_of(readings_of(measured.text)[0]))
+        return replace(verdict, context=stated.echo, notes=(*verdict.notes, UNUSED_CONTEXT))
     readings = readings_of(source, declared=Declared(functions=functions_of_time(assume)))
-    return verdict_on_readings(readings, notation_of, source, assume, units, repair)
+    fitting = [reading for reading in readings if stated.fits(names_of(reading))] or readings[:1]
+    return verdict_on_readings(fitting, notation_of, source, assume, units, repair, stated)
 
 
 def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
-    units: Mapping[str, str] | None = None, repair: bool = True,
+    units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
     """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
 
@@ -78,15 +95,20 @@ def verdict_on_readings(
         if late:
             break
         try:
-            verdict = verdict_on_reading(reading, notation(reading), source, assume, units, repair and not verdicts)
+            verdict = verdict_on_reading(
+                reading, notation(reading), source, assume, units, repair and not verdicts, stated
+            )
         except InputError as reason:
             refusal = refusal or reason
             continue
         verdicts.append((reading, verdict))
+        if stated and verdict.verdict in ("true", "false") and verdict.recognised_as:
+            break  # with the meaning stated, the other readings mean nothing else
     of_usual = readings[0] in [reading for reading, _ in verdicts]
     if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
         raise refusal  # an unusual reading accuses nobody
-    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "recognised"), 0)
+    known = ("recognised", "true") if stated else ("recognised",)
+    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if verdicts[0][1].verdict == "definition":
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
     (usual, verdict), *others = verdicts
@@ -100,6 +122,29 @@ def verdict_on_readings(
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
+
+
+def _on_measured(
+    measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
+) -> Verdict:
+    """Return the verdict on a text whose numbers have units."""
+    reading = readings_of(measured.text)[0]
+    lines = claims_of_reading(reading, measured.text, assume, units)
+    notation = notation_of(reading)
+    parts = [
+        with_units(claim, measured, lambda other: with_rounding(other, check_claim(other, repair)))
+        for line in lines
+        for claim in line
+    ]
+    verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation)
+    diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
+    notes = tuple(map(measured.restored, verdict.notes))
+    return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes)
+
+
+def names_of(reading: Reading) -> set[str]:
+    """Return the names in a reading, with ``d`` in front for a rate."""
+    return {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
@@ -122,18 +167,26 @@ def _text_of(reading: Reading, notation: Notation) -> str:
 
 def verdict_on_reading(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
-    units: Mapping[str, str] | None = None, repair: bool = True,
+    units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
     """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines.
 
-    ``notation`` is the notation of the text, in which formulas are written.
+    ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
     """
-    lines = claims_of_reading(reading, source, assume, units)
+    lines = claims_of_reading(reading, source, assume, units, stated)
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
     echo = _text_of(reading, notation)
-    return replace(verdict, text=source.strip(), reading=echo if _differs(echo, source) else "")
+    echo = echo if _differs(echo, source) else ""
+    notes = verdict.notes
+    if (
+        stated
+        and verdict.verdict in DECIDED
+        and not any(part.recognised_as for part in [verdict, *(p for _, p in parts)])
+    ):
+        notes = (*notes, UNUSED_CONTEXT)
+    return replace(verdict, text=source.strip(), reading=echo, context=stated.echo, notes=notes)
 
 
 def _differs(echo: str, source: str) -> bool:
@@ -143,10 +196,13 @@ def _differs(echo: str, source: str) -> bool:
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
-    repairs = tuple(_marked(repair, claim, notation) for repair in verdict.repairs)
+    repairs = tuple(
+        repair if repair.code in AS_TYPED else _marked(repair, claim, notation) for repair in verdict.repairs
+    )
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
     )

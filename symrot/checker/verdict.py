@@ -177,7 +177,8 @@ class Verdict:
     repairs : tuple of Repair
         At most three, nearest first.
     recognised_as : tuple of Identification
-        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first.
+        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first; for a
+        claim that is false by its context, the formula that is meant.
     reason : str
         The reason why a claim is undecided or refused; otherwise empty.
     dimension : Dimensions
@@ -190,6 +191,8 @@ class Verdict:
         The time that it took.
     reading : str
         The claim as it was read, in the notation of the input; empty if it is no different from the text.
+    context : str
+        What is stated in words about names, body, frame and sequence, as it was understood.
 
     Examples
     --------
@@ -213,6 +216,7 @@ class Verdict:
     text: str = ""
     seconds: float = 0.0
     reading: str = ""
+    context: str = ""
 
     @property
     def entry(self) -> tuple[int, int] | None:
@@ -230,10 +234,12 @@ class Verdict:
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         near = self.verdict == "doubtful"
-        kinds = ["near to" if near else "formula of", *["or to" if near else "or of"] * len(self.recognised_as)]
+        first = {"doubtful": "near to", "false": "meant"}.get(self.verdict, "formula of")
+        kinds = [first, *["or to" if near else "or of"] * len(self.recognised_as)]
         rows = [
             ("claim", self.text),
             ("read as", self.reading),
+            ("context", self.context),
             *((kind, f"the {reading}") for kind, reading in zip(kinds, self.recognised_as, strict=False)),
             ("true if", " or ".join(self.requires)),
             ("where", ", ".join(defined)),
@@ -270,6 +276,7 @@ class Verdict:
             "where": self.where,
             "claim": self.text,
             "reading": self.reading,
+            "context": self.context,
             "requires": list(self.requires),
             "reason": self.reason,
             "dimension": {

@@ -246,7 +246,8 @@ def _check(options: Namespace) -> int:
         raise InputError("--all: expected --textbook all as well, since the page contains every document")
     if options.textbook:
         return _check_textbook(options)
-    results = verdicts.check(options.claim, options.hypotheses, options.unit, not options.no_repair, progress)
+    stated = {key: getattr(options, key) for key in ("where", "body", "frame", "sequence")}
+    results = verdicts.check(options.claim, options.hypotheses, options.unit, not options.no_repair, progress, stated)
     progress("")
     if options.json:
         say_json([verdict.to_json() for verdict in results])
@@ -282,7 +283,9 @@ def _check_textbook(options: Namespace) -> int:
 
 
 def _identify(options: Namespace) -> int:
-    identifications = symrot.identify(options.formula)
+    identifications = symrot.identify(
+        options.formula, body=options.body, frame=options.frame, sequence=options.sequence
+    )
     if options.json:
         say_json([identification.to_json() for identification in identifications])
     else:
@@ -404,14 +407,30 @@ def _check_arguments(parser: ArgumentParser) -> None:
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+    parser.add_argument("--where", metavar="'NAME = WORDS'", action="append", default=[],
+                        help="what a name means, with a claim as text: 'I = moment of inertia about the centre', "
+                        "'p = spin'; may be repeated")  # fmt: skip
+    _context_options(parser)
     parser.add_argument("--strict", action="store_true",
                         help="exit 1 for a definition, a named formula that symrot does not know")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     json_option(parser)
 
 
+def _context_options(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--body", metavar="WORDS", default="", help="the body: 'solid cylinder of radius r and height h'"
+    )
+    parser.add_argument(
+        "--frame", metavar="FRAME", default="", help="frame of angular velocities and rates: body or space"
+    )
+    parser.add_argument("--sequence", metavar="SEQUENCE", default="",
+                        help="Euler angles: ZXZ or 3-1-3 about moving axes, zyx about fixed axes")  # fmt: skip
+
+
 def _identify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
+    _context_options(parser)
     json_option(parser)
 
 

@@ -1,9 +1,10 @@
 """Verdicts on claims as text: one claim in full, or a file of claims as a list with a count."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 from symrot.checker.marks import carets
 from symrot.checker.verdict import Repair, Verdict
@@ -25,27 +26,34 @@ def check(
     units: Sequence[str],
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
+    stated: Mapping[str, Any] | None = None,
 ) -> list[Verdict]:
     """Decide a claim (text or LaTeX), or all claims of a file, and return the verdicts.
+
+    ``stated`` is the context of a claim in words: where, body, frame and sequence.
 
     A claim in a file that cannot be parsed gets the verdict ``"refused"``.
 
     Raises
     ------
     InputError
-        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses given together with a file.
+        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses, units or a context together
+        with a file.
     """
     from symrot.checker.interface import check as check_text
     from symrot.checker.interface import verdicts_of_file
 
     if not _is_file(source):
-        return [check_text(source, assume=assumptions, units=_units(units), repair=repair)]
+        return [check_text(source, assume=assumptions, units=_units(units), repair=repair, **(stated or {}))]
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
         raise InputError("--unit: expected a claim as text, got a file; a file states its own units")
     if assumptions:
         raise InputError("--given: expected a claim as text, got a file; a file states its own hypotheses")
+    for option, value in (stated or {}).items():
+        if value:
+            raise InputError(f"--{option}: expected a claim as text, got a file; a file states its own context")
     return list(verdicts_of_file(source, repair, progress))
 
 

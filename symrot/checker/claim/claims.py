@@ -30,6 +30,7 @@ from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
+from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of, read_context
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
@@ -112,6 +113,8 @@ class Claim:
         the claim is measured against.
     has_parts : bool
         Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
+    context : Context
+        What is said in words about the names of the claim, and about the body.
     """
 
     id: str = ""
@@ -130,6 +133,42 @@ class Claim:
     notes: tuple[str, ...] = ()
     editable: tuple[str, ...] = SIDES
     has_parts: bool = False
+    context: Context = NO_CONTEXT
+
+    @property
+    def without_context(self) -> "Claim":
+        """The claim without what is said about it in words."""
+        return replace(self, context=NO_CONTEXT)
+
+    @property
+    def defining(self) -> dict[str, Node]:
+        """The names that hypotheses define by a formula for a scalar, as ``c1 == cos(alpha)``, with the formula."""
+        definitions: dict[str, Node] = {}
+        for sign, left, right in self.hypotheses:
+            inside = {str(node.value) for _, node in walk(right) if node.kind in ("name", "call")}
+            if sign == "==" and left.kind == "name" and left.value not in inside and shape_of(right, {}) is None:
+                definitions.setdefault(str(left.value), right)
+        return definitions
+
+    def with_definitions(self, value: Any) -> Any:
+        """Return a value in which the formulas of :attr:`defining` stand for their names."""
+        interpreter = self.interpreter()
+        for name, tree in self.defining.items():
+            value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
+        return value
+
+    @property
+    def expanded(self) -> "Claim":
+        """The claim with the formulas of :attr:`defining` for their names, without the hypotheses that define them."""
+        definitions = self.defining
+        if self.relation is None or not definitions:
+            return self
+        rest = tuple(
+            hypothesis for hypothesis in self.hypotheses if definitions.get(str(hypothesis[1].value)) != hypothesis[2]
+        )
+        sign, left, right = self.relation
+        relation = sign, _substituted(left, definitions), _substituted(right, definitions)
+        return replace(self, relation=relation, hypotheses=rest, alternatives=())
 
     @property
     def text(self) -> str:
@@ -228,6 +267,13 @@ class Claim:
         same = text(left) == text(right)  # equal sides are equal for all bases
         bases = () if same else interpreter.assumed_bases
         return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands, bases)
+
+
+def _substituted(tree: Node, definitions: Mapping[str, Node]) -> Node:
+    """Return a tree with formulas in place of names."""
+    if tree.kind == "name" and tree.value in definitions:
+        return definitions[tree.value]
+    return replace(tree, args=tuple(_substituted(child, definitions) for child in tree.args))
 
 
 def relation_text(relation: Relation) -> str:
@@ -372,7 +418,7 @@ def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
     """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
     sign, left, right = _hypothesis(source, "given", words=words)
-    is_definition = sign == "==" and left.kind == "name" and (shape_of(right, {}) or (0, 0))[1] > 1
+    is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
@@ -487,9 +533,12 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 # -- TOML -------------------------------------------------------------------------------------------------------------
 
-TEXT_KEYS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
+TEXT_KEYS = (
+    "id", "body", "frame", "sequence", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value",
+    "against",
+)  # fmt: skip
 LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
-OTHER_KEYS = ("define", "units")
+OTHER_KEYS = ("where", "define", "units")
 """The keys of a claim, by the type of their value."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
@@ -560,7 +609,8 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
             name, where, excerpt = (str(entry.get(key, other))[:80] for key, other in (
                 ("id", f"claim-{number}"), ("where", ""), ("claim", entry.get("latex", "")),
             ))  # fmt: skip
-            entries.append(Refusal(name, where, excerpt, str(reason)))
+            place = where if isinstance(entry.get("where", ""), str) else ""
+            entries.append(Refusal(name, place, excerpt, str(reason)))
     return entries
 
 
@@ -589,9 +639,14 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     own = Declared(known - {*functions}, functions)
     hypotheses = tuple(_hypothesis(text, f"{place}: given", own) for text in entry.get("given", ()))
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
+    where = entry.get("where", "")
+    meanings = [] if isinstance(where, str) else where
+    body, frame, sequence = (str(entry.get(key, "")) for key in ("body", "frame", "sequence"))
+    context = read_context(meanings, body, frame, sequence, label=place)
+    units = check_units(entry.get("units", {}), known, place)
     claim = Claim(
-        name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
-        units=check_units(entry.get("units", {}), known, place), editable=_editable(entry, define, place),
+        name, "" if meanings else where, symbols, functions, tuple(define), hypotheses, sources=sources,
+        units={**context.units({*symbols}, units), **units}, editable=_editable(entry, define, place), context=context,
     )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
@@ -620,6 +675,10 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         else:
             readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
+    try:
+        context.check_names({name for side in relation[1:] for name in quantities_of(side)})
+    except InputError as reason:
+        raise InputError(f"{place}: {reason}") from None
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
 
 
@@ -684,6 +743,9 @@ def _check_key(key: str, value: Any, place: str) -> None:
         fits = isinstance(value, list) and all(
             isinstance(pair, list) and len(pair) == 2 and all(isinstance(v, str) for v in pair) for pair in value
         )
+    elif key == "where":
+        expected = "a text, the place in a document, or a list of texts 'NAME = words'"
+        fits = isinstance(value, str) or (isinstance(value, list) and all(isinstance(v, str) for v in value))
     elif key == "units":
         expected = "a table of units by symbol"
         fits = isinstance(value, dict) and all(isinstance(v, str) for v in value.values())

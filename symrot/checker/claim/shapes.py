@@ -68,14 +68,26 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one."""
+    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one.
+
+    In ``I = [[a, b], [c, d]]`` the letter I names the matrix.
+    """
     sign, *sides = relation
+    if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
+        return relation
     left, right = (_with_unit_matrices(side, shapes) for side in sides)
     for side, other in ((left, right), (right, left)):
         shape = shape_of(side, shapes)
         if _is_square(shape) and shape_of(other, shapes) is None and (made := _as_matrix(other, shape)) is not None:
             return (sign, side, made) if side is left else (sign, made, side)
     return sign, left, right
+
+
+def _is_name_of(name: Node, matrix: Node) -> bool:
+    """Return whether a side is a letter alone, and the other side a matrix that is written out with letters in it."""
+    is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
+    letters = [node for _, node in walk(matrix) if node.kind == "name"]
+    return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:

@@ -21,6 +21,8 @@ from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
+from symrot.checker.context.admission import admits_letters, admits_name
+from symrot.checker.context.context import read_context
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
@@ -34,7 +36,7 @@ from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Identification", "identified", "identify", "named_parts", "unit_of"]
+__all__ = ["Identification", "identified", "identify", "known_value", "named_parts", "unit_of"]
 
 UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
 
@@ -73,7 +75,9 @@ class View:
     order: tuple[int, ...]
 
 
-def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
+def identify(
+    formula: Any, *, most: int = MOST, body: str = "", frame: str = "", sequence: str = ""
+) -> list[Identification]:
     """Return the known formulas to which a formula is equal, nearest names first; an empty list if there is none.
 
     Parameters
@@ -82,6 +86,8 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
         Text in the language of claims, LaTeX (text with a backslash), or a SymPy value.
     most : int
         How many names to return at most.
+    body, frame, sequence : str
+        A body in words, ``"body"`` or ``"space"``, and a sequence of Euler angles: other formulas are left out.
 
     Returns
     -------
@@ -102,7 +108,13 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     >>> identify("Matrix([[sin(b)*sin(c), cos(c), 0], [sin(b)*cos(c), -sin(c), 0], [cos(b), 0, 1]])")[0].name
     'ZXZ body-frame rate Jacobian, omega = B dq/dt'
     """
-    return list(islice(identified(_value(formula)), most))
+    stated = read_context((), body, frame, sequence)
+    fitting = (
+        known
+        for known in identified(_value(formula))
+        if admits_name(stated, known.name, "") and admits_letters(stated, known.mapping, ())
+    )
+    return list(islice(fitting, most))
 
 
 def _value(formula: Any) -> Any:
@@ -221,11 +233,17 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 
 
 @cache
-def _known_value(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
+def known_value(text: str) -> Any:
+    """Return the SymPy value of the text of a known formula, whose names are real symbols."""
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
-    entries, _ = flatten(interpreter.read(tree, text))
+    return interpreter.read(tree, text)
+
+
+@cache
+def _known_entries(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
+    entries, _ = flatten(known_value(text))
     return tuple(entries), fingerprint(entries)
 
 
@@ -233,7 +251,7 @@ def _matched(
     known: Known, own: Fingerprint, entries: Sequence[Expr], view: View, quantity: str | None
 ) -> Identification | None:
     """Return the identification if the formula is proven equal to the known formula; otherwise None."""
-    theirs, print_of = _known_value(known.text)
+    theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
         few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS)

@@ -19,6 +19,8 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
+from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
+from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.relations import primitive
@@ -28,7 +30,7 @@ from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_name", "verdict_on_relation"]
+__all__ = ["verdict_on_name", "verdict_on_relation", "words_of"]
 
 MOST_EDITS = 400
 MOST_NODES = 400
@@ -85,11 +87,6 @@ SQUARED = ", squared"
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments are not what a faulty formula is likely to mean."""
 
-COMPONENTS = {
-    "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
-}  # fmt: skip
-"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
-
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
 
@@ -109,7 +106,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS) or _with_other_products(claim, named)
     if readings:
         return Verdict("recognised", recognised_as=readings)
-    is_open = _words(named) is not None or named.solve is None
+    is_open = words_of(named) is not None or named.solve is None
     edited = _nearest(claim, named) if repair and is_open else None
     if edited is not None:
         return edited
@@ -185,7 +182,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     The likeliest formula comes first.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    is_open = _words(named) is None and least_symbols == LEAST_SYMBOLS
+    is_open = words_of(named) is None and least_symbols == LEAST_SYMBOLS
     return solved or _readings_of_relation(claim, named, tree, LEAST_SYMBOLS if is_open else LEAST_SYMBOLS_RELATED)
 
 
@@ -195,13 +192,16 @@ def _readings_of_relation(
     """Return the known relations to which the equation of the quantity's side of a claim with a formula is equal."""
     difference = sum_of([named.side, negated(tree)])
     try:
-        value = claim.interpreter().read(difference)
+        value = claim.with_definitions(claim.interpreter().read(difference))
     except InputError:
         return ()
     if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
     value = primitive(value)
-    return tuple(islice(identified(value, steps=False, named=True, quantity="", is_relation=True), MOST_READINGS))
+    letters = {*letters_of(tree), *letters_of(named.side)}
+    looked_up = identified(value, steps=False, named=True, quantity="", is_relation=True)
+    fitting = (known for known in looked_up if _fits_context(claim.context, named, known, letters))
+    return tuple(islice(fitting, MOST_READINGS))
 
 
 def _readings_of_formula(
@@ -209,18 +209,21 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the quantity to which a formula for it is equal, the likeliest first."""
     try:
-        value = claim.interpreter().read(formula)
+        value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
         return ()
-    least = 1 if _words(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
+    least = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least:
         return ()
+    letters = {*letters_of(formula)}
     searched, ending = _without_function(value)
-    looked_up = identified(searched, steps=False, named=_words(named) is not None, quantity=_plain(named))
+    looked_up = identified(searched, steps=False, named=words_of(named) is not None, quantity=_plain(named))
     fitting = [
         replace(known, name=known.name.removesuffix(ending))
         for known in looked_up
-        if ending_of(known.name) == ending and _fits(named, known, is_matrix(value))
+        if ending_of(known.name) == ending
+        and _fits(named, known, is_matrix(value))
+        and _fits_context(claim.context, named, known, letters)
     ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
@@ -247,14 +250,21 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, by the name of the quantity and the units of its symbols."""
     if known.how and (not matrix or "sign" in known.how or "times" in known.how):
         return False
-    words = _words(named)
+    words = words_of(named)
     if words is not None and not any(word in known.name for word in words):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
 
 
-def _words(named: NamedFormula) -> tuple[str, ...] | None:
+def _fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
+    """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
+    if not context:
+        return True
+    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.mapping, letters)
+
+
+def words_of(named: NamedFormula) -> tuple[str, ...] | None:
     """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
     return next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
 

@@ -6,8 +6,7 @@ A formula of the corpus has one of these outcomes; the first two are wrong answe
 
 accused    a correct formula is called false or doubtful
 believed   a faulty formula is called true, conditional or recognised
-refused    the text cannot be read
-context    one of these two, of a formula whose meaning is said in words, which the check does not read yet
+refused    the text, or its context in words, cannot be read
 unknown    a correct formula is called a definition or undecided; a faulty one is not called false or doubtful
 right      the verdict is the expected one, or one that the corpus counts as right in its place
 
@@ -27,7 +26,7 @@ import symrot
 from symrot.errors import SymrotError
 
 CORPUS = Path(__file__).parent / "corpus"
-OUTCOMES = ("accused", "believed", "context", "refused", "unknown", "right")
+OUTCOMES = ("accused", "believed", "refused", "unknown", "right")
 GOOD, BAD = ("true", "conditional", "recognised"), ("false", "doubtful")
 
 
@@ -53,16 +52,14 @@ def outcome(expected: str, verdict: str) -> str:
 
 def judged(entry: dict[str, Any]) -> tuple[str, str, str, float]:
     """Return a formula's outcome, verdict, sentence and processor time, s."""
-    given = [text for text in entry.get("given", []) if "=" in text]
+    context = {key: entry[key] for key in ("where", "body", "frame", "sequence") if key in entry}
     start = process_time()
     try:
-        verdict = symrot.check(entry["text"], assume=given)
+        verdict = symrot.check(entry["text"], assume=entry.get("given", []), **context)
         word, sentence = verdict.verdict, "; ".join(map(str, verdict.recognised_as)) or verdict.reason
     except SymrotError as reason:
         word, sentence = "refused", str(reason)
     name = outcome(entry["expected"], word)
-    if name in ("accused", "believed") and any(entry.get(field) for field in ("where", "body", "frame", "sequence")):
-        name = "context"
     return name, word, sentence, process_time() - start
 
 
@@ -71,7 +68,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--chapter", default="")
-    parser.add_argument("--list", nargs="*", default=["accused", "believed", "context"], choices=OUTCOMES)
+    parser.add_argument("--list", nargs="*", default=["accused", "believed"], choices=OUTCOMES)
     options = parser.parse_args(arguments)
     entries = formulas(options.chapter)
     with ProcessPoolExecutor(options.workers) as pool:

@@ -194,9 +194,9 @@ def test_the_names_after_d_dt_that_have_no_rate_are_told_as_constants():
     assert symrot.check("M = d/dt (I ω)").reading == "M = diff(I(t)*ω(t), t)"
 
 
-def test_a_unit_after_a_number_is_told_to_be_a_name():
-    assert symrot.check("5 km = 5000 m").notes[0] == "km is read as a name, not as a unit"
-    assert symrot.check("ω = 1500 rpm").notes == ("rpm is read as a name, not as a unit",)
+def test_a_unit_next_to_other_names_is_told_to_be_a_name():
+    assert symrot.check("5 km x = 5000 m x").notes[0] == "km is read as a name, not as a unit"
+    assert symrot.check("ω = 1500 rpm").notes == ("1 rpm = pi/30 rad/s",)
 
 
 HYPERBOLIC = (
