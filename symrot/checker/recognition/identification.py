@@ -46,14 +46,14 @@ MOST_DRAWS = 24
 """The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
-FEW_SYMBOLS = 3
+FEW_SYMBOLS = 4
 """A formula of so few symbols is recognised only in the letters that books use for its quantities."""
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",

@@ -182,13 +182,15 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     nearby = near_formulas(claim, named, lambda known: _is_meant(known, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
+    of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
+    shifted = next(of_bodies, False)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
         tried.add(near.tree)
-        if not _is_evident(claim, named, near):
+        if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
         if readings and not _has_equal(claim, near.tree, repairs):
@@ -205,6 +207,14 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     )
 
 
+def _is_of_body(code: str, known: str) -> bool:
+    """Return whether a formula has another number or term than the moment of a body.
+
+    It may be right for another body; a larger moment may be that about a parallel axis.
+    """
+    return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
+
+
 def _misfit(name: str, known: str) -> float:
     """Return how much a known formula differs from what a name says, and how rarely books have its body or sequence."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
@@ -212,7 +222,7 @@ def _misfit(name: str, known: str) -> float:
 
 
 def _is_meant(known: Known, words: Sequence[str] | None) -> bool:
-    return words is None or any(word in known.name for word in words)
+    return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known.name) for word in words)
 
 
 def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
@@ -222,7 +232,7 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
 
 
-def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
+def _is_evident(named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
@@ -240,6 +250,8 @@ def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if words is None:
         return len(letters) >= MANY_LETTERS
     is_sum = _has_terms(named.formula)
+    if near.code == "sign_of_term" and not is_sum:
+        return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
     return len(letters) >= least
@@ -260,7 +272,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
             continue
         all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
-        if not readings:
+        is_open = edit.code in ("sign_of_term", "overall_sign") and not _has_terms(named.formula)
+        if not readings or is_open or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:

@@ -58,7 +58,11 @@ TIME = Node("name", "t")
 
 
 class Near(NamedTuple):
-    """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula."""
+    """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
+
+    ``renamed`` is the number of symbols with new names. The claim's formula may have another unit than the known one.
+    If ``is_shifted``, it is larger, and no multiple, as a moment of inertia about a parallel axis is.
+    """
 
     cost: float
     code: str
@@ -66,6 +70,7 @@ class Near(NamedTuple):
     known: Known
     renamed: int
     has_other_unit: bool
+    is_shifted: bool
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
@@ -277,14 +282,23 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
+    is_shifted = actual is not None and _is_shifted(actual, target)
     near_ones = []
     for cost, code, tree in trees:
         has_lacking = LACKING in _nodes(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        near_ones.append(Near(cost, code, whole, known, renamed, other_unit))
+        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted))
     return near_ones
+
+
+def _is_shifted(actual: Values, known: Values) -> bool:
+    """Return whether values are larger than those of a known formula, and no multiple of them."""
+    if any(map(is_matrix, (*actual, *known))) or not all(known):
+        return False
+    ratios = [value / other for value, other in zip(actual, known, strict=True)]
+    return min(ratios) > 1 and not all(near(ratio, ratios[0]) for ratio in ratios)
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
