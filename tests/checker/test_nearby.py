@@ -58,6 +58,12 @@ def test_one_wrong_entry_of_a_matrix_is_repaired(wrong, entry):
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", entry)
 
 
+def test_the_matrix_of_a_quaternion_may_have_any_letters():
+    matrix = ("[[1 - 2(y² + z²), 2(x y - z w), 2(x z + y w)], [2(x y + z w), 1 - 2(x² + z²), 2(y z - x w)], "
+              "[2(x z - y w), 2(y z + x w), 1 - 2(x² + y²)]]")  # fmt: skip
+    assert symrot.check(f"R = {matrix}").verdict == "recognised"
+
+
 def _letters(**values):
     atoms = {read_expression(name): tuple(v) for name, v in values.items()}
     places = [PointOfLetters({name: v[n] for name, v in values.items()}, {}, {}) for n in range(2)]

@@ -47,7 +47,10 @@ MOST_DRAWS = 24
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 FEW_SYMBOLS = 4
-"""A formula of so few symbols is recognised only in the letters that books use for its quantities."""
+"""A formula of so few symbols is recognised only in the letters that books use for its quantities.
+
+For a matrix, whose entries say more, it is one symbol less.
+"""
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
@@ -241,7 +244,7 @@ def _matched(
     theirs, print_of = _known_value(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(pairings(print_of, own, view.order), MOST_TRIES):
-        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS)
+        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS - (view.shape is not None))
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
