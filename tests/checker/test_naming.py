@@ -88,8 +88,8 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, ca
     assert verdict.verdict == "doubtful" and not verdict
     assert verdict.diagnosis.code == code
     assert str(verdict.recognised_as[0]).startswith(name)
-    (repair,) = verdict.repairs
-    assert symrot.check(repair.text).verdict == "recognised"
+    assert 1 <= len(verdict.repairs) <= 3
+    assert all(symrot.check(repair.text).verdict == "recognised" for repair in verdict.repairs)
     assert main(["check", claim]) == 1
     assert "instead:" in capsys.readouterr().out
 
@@ -206,7 +206,7 @@ def test_names_that_are_equal_have_the_same_formula():
     assert symrot.check("Ixx = Iyy = m(3r² + h²)/6").verdict == "doubtful"
 
 
-@pytest.mark.parametrize("claim", ["β₀² + β₁² + β₂² + β₃² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g^2 R = 0"])
+@pytest.mark.parametrize("claim", ["a₀² + b₁² + c₂² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g^2 R = 0"])
 def test_a_constraint_of_quantities_is_not_called_false(claim):
     assert symrot.check(claim).verdict == "definition"
 
@@ -242,6 +242,12 @@ def test_chains_in_latex_are_decided_link_by_link():
 @pytest.mark.parametrize(("claim", "name"), [
     ("I_G ω₁ + ΣM Δt = I_G ω₂", "relation for impulse and angular momentum about one axis"),
     ("λ_1 Ω² cos θ − λ_3 ω_3 Ω + M g R = 0", "relation for steady precession of a heavy top"),
+    ("β₀² + β₁² + β₂² + β₃² = 1", "relation for the unit norm of a quaternion"),
+    ("dL/dt + omega x L = Gamma", "torque by the rate of the angular momentum in the body"),
+    ("β₀ = cos(Φ/2)", "scalar component of the quaternion of axis and angle"),
+    ("σ_1 = β₁/(1 + β₀)", "first component of the modified Rodrigues parameters of a quaternion"),
+    ("θ = 2 atan2(√(q₁² + q₂² + q₃²), q₀)", "angle of rotation of a unit quaternion"),
+    ("ψ̇ = I p/((I₀ − I) cos θ)", "rate of precession of a free symmetric body from its spin"),
     ("tan γ = (C/A) tan θ", "relation for the angles of momentum and angular velocity to the axis of a free symmetric body"),
     (r"\Omega_1^2 = \frac{(2EI_3-M^2)-I_2(I_3-I_2)\Omega_2^2}{I_1(I_3-I_1)}", "angular velocity of a free body of given energy"),
     (r"\omega_3^2 = \frac{4MglI_1}{I_3^2}", "angular velocity of the least spin of a sleeping top"),

@@ -51,8 +51,8 @@ PRINTED = {  # code: what is printed, what would be right (None: the claim holds
     "sign_branch": ("sqrt(x**2) == x", None),
     "principal_value": ("asin(sin(x)) == x", None),
 }  # fmt: skip
-ELSEWHERE = {"none", "domain", "dimension"}
-"""No diagnosis, and those that come without an edit."""
+ELSEWHERE = {"none", "domain", "dimension", "exponent"}
+"""No diagnosis, those that come without an edit, and those of formulas that only name a quantity."""
 
 
 def same_text(first, second):

@@ -39,7 +39,7 @@ def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
     Raises
     ------
     NotInField
-        For divisions by zero, roots of numbers that are no squares, and functions that the field does not have.
+        For divisions by zero, and functions that the field does not have.
     """
     known: dict[Expr, int] = dict(point)
     return tuple(_value(entry, known) for entry in entries)
@@ -87,10 +87,11 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return the smaller of the two roots of a square in the field, so that equal radicands have equal roots."""
+    """Return the smaller of the two roots of a square in the field, so that equal radicands have equal roots.
+
+    The negative of any other number is a square; its root is returned.
+    """
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
-    if (root * root - value) % PRIME:
-        raise NotInField
     return min(root, PRIME - root)
 
 

@@ -36,7 +36,9 @@ from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Identification", "identified", "identify", "known_value", "named_parts", "unit_of"]
+__all__ = [
+    "Identification", "identified", "identify", "known_value", "named_parts", "pairings", "plain_name", "unit_of",
+]  # fmt: skip
 
 UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
 
@@ -48,14 +50,17 @@ MOST_DRAWS = 24
 """The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
-FEW_SYMBOLS = 3
-"""A formula of so few symbols is recognised only in the letters that books use for its quantities."""
+FEW_SYMBOLS = 4
+"""A formula of so few symbols is recognised only in the letters that books use for its quantities.
+
+For a matrix, whose entries say more, it is one symbol less.
+"""
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
@@ -194,12 +199,17 @@ def identified(
         ]
         if matches:
             break
-    matches.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
+    matches.sort(key=lambda match: (quantity is not None and "sign" in match.how, *_changes(match)))
     names = set()
     for identification in matches:
         if identification.name not in names:
             names.add(identification.name)
             yield identification
+
+
+def _changes(match: Identification) -> tuple[int, int]:
+    """Return how many changes and new names it takes to make a known formula equal to a formula."""
+    return bool(match.how) + match.how.count(" and "), len(match.mapping)
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
@@ -253,8 +263,8 @@ def _matched(
     """Return the identification if the formula is proven equal to the known formula; otherwise None."""
     theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
-    for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
-        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS)
+    for pairing in islice(pairings(print_of, own, view.order), MOST_TRIES):
+        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS - (view.shape is not None))
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
@@ -282,21 +292,23 @@ def _matched(
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
     """Return whether each name that a known formula and a claim have in common stands for the same quantity in both."""
-    names = [(_plain_name(mine), _plain_name(other)) for mine, other in pairs]
+    names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
 
 
 def _is_usual(mine: Expr, own: Expr) -> bool:
     """Return whether books use the letter of a symbol for a quantity with the unit of a symbol of a known formula."""
-    name = _plain_name(as_text(own))
+    name = plain_name(as_text(own))
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
     return pattern is None or re.fullmatch(pattern, name) is not None
 
 
-def _plain_name(name: str) -> str:
+def plain_name(name: str) -> str:
     """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
+    if rate is None and (dots := re.fullmatch(r"(\w+?)_(d*)dot", name)) is not None:
+        return f"d{dots[2]}{dots[1]}"
     return "d" * rate[3].count("t") + rate[1] if rate else name.removesuffix("(t)")
 
 
@@ -309,7 +321,7 @@ def _factor_text(factor: Rational) -> str:
     return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
 
 
-def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
+def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
     """Yield the ways to pair the symbols of two formulas so that signatures agree, pairs of equal names first."""
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
@@ -349,7 +361,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
 def unit_of(name: str) -> str | None:
     """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
-    name = _plain_name(name)
+    name = plain_name(name)
     if re.fullmatch(r"[ABC]", name):
         return "kg m^2"
     return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)

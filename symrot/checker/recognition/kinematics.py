@@ -22,10 +22,10 @@ ENTRIES = Matrix(3, 3, symbols.rotation_entries)
 BELOW = ((2, 1), (0, 2), (1, 0))
 """The entries of a skew matrix that are the components of its vector."""
 WORDS = ("first", "second", "third")
-UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER = (
+UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHEEL = (
     f"derivations/{name}.md"
     for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
-                 "angular_momentum", "kinetic_energy", "work_and_power")
+                 "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel")
 )  # fmt: skip
 
 Named = tuple[str, str, Any]
@@ -49,6 +49,12 @@ def vectors() -> Iterator[Named]:
         yield f"acceleration of a point of a body with {place}", RELATIVE, added + on_body
         yield f"acceleration of a point in a rotating frame with {place}", RELATIVE, added + in_frame
     momentum = Matrix(symbols.momentum_b)
+    rates = Matrix([Symbol(f"dL_{n}", real=True) for n in (1, 2, 3)])
+    yield "torque by the rate of the angular momentum in the body", MOMENTUM, rates + OMEGA.cross(momentum)
+    tensor = Matrix(3, 3, [Symbol(f"I_{i}{j}", real=True) for i in "xyz" for j in "xyz"])
+    yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
+    spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
+    yield "torque on a gyroscope whose axis precesses", WHEEL, OMEGA.cross(symbols.C * spin)
     about_point = POSITION.cross(symbols.m * origin) + momentum
     yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
     yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
@@ -109,6 +115,9 @@ def _angles() -> Iterator[Named]:
     sines = [cancel(skew_part[place] / component) for place, component in zip(BELOW, AXIS, strict=True)]
     axis = Matrix([(ENTRIES[i, j] - ENTRIES[j, i]) / (2 * sine) for (i, j), sine in zip(BELOW, sines, strict=True)])
     yield "axis of a rotation matrix", UNIT, axis
+    scalar, *vector = rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)
+    yield "scalar component of the quaternion of axis and angle", UNIT, scalar
+    yield from _with_words("quaternion of axis and angle", UNIT, Matrix(vector))
     half = symbols.phi / 2  # the angle is twice that of the scalar part
     assert rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)[0] == cos(half)
     yield "angle of rotation of a unit quaternion, 2 acos", PARAMETERS, Q[0]
@@ -135,6 +144,12 @@ def _euler_angles() -> Iterator[Named]:
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
 
 
+def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
+    """Yield the components of a vector that have so few symbols that only a name makes them recognisable."""
+    for word, component in zip(WORDS, column, strict=True):
+        yield f"{word} component of the {name}", source, component
+
+
 def _rodrigues() -> Iterator[Named]:
     """Yield the Rodrigues parameters from axis and angle and from a quaternion, and their rates from omega."""
     of_axis = rotation_vector.quaternion_of_axis_angle()
@@ -142,8 +157,13 @@ def _rodrigues() -> Iterator[Named]:
         for q, origin in ((of_axis, "axis and angle"), (Q, "a quaternion")):
             scalar, *vector = q
             below = scalar if name == "rodrigues" else 1 + scalar
-            yield f"{title} of {origin}", RODRIGUES, Matrix([component / below for component in vector])
+            parameters = Matrix([component / below for component in vector])
+            yield f"{title} of {origin}", RODRIGUES, parameters
+            yield from _with_words(f"{title} of {origin}", RODRIGUES, parameters)
         chart = attitude.chart(name)
+        length, (first, *others) = Symbol("sigma", real=True), chart.parameters
+        scalar = cancel(chart.quaternion[0].subs(dict.fromkeys(others, 0)).subs(first, length))
+        yield f"scalar component of the quaternion of the {title} by their length", RODRIGUES, scalar
         for frame in ("body", "space"):
             rates = chart.rate_matrix(frame).inverse * OMEGA
             yield f"rates of the {title} from omega in the {frame} frame", RODRIGUES, rates.applyfunc(cancel)

@@ -7,7 +7,7 @@ it equal to one, and "definition" otherwise.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from itertools import islice, pairwise
 from typing import Any
@@ -22,15 +22,19 @@ from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, unit_of
-from symrot.checker.recognition.known_formulas import ending_of
+from symrot.checker.recognition.known_formulas import Known, ending_of
+from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, single_edits
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
+from symrot.exact.decide import decide
 
 __all__ = ["verdict_on_name", "verdict_on_relation", "words_of"]
+
+TIME = Node("name", "t")
 
 MOST_EDITS = 400
 MOST_NODES = 400
@@ -46,30 +50,49 @@ LEAST_SYMBOLS_RELATED = 5
 With fewer symbols, it may be another formula.
 """
 
+MANY_LETTERS = 5
+"""The fewest letters of a formula, for a quantity of an unknown name, that has a fault rather than another meaning."""
+
+MANY_ENTRIES = 4
+"""The fewest letters, each counted as often as it occurs, of a matrix that has a fault rather than another meaning."""
+
+SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
+"""The faults that a wrong unit proves."""
+
+PER_NAME, PER_PLACE = 0.1, 0.3
+"""The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+MOST_REPAIRS, MOST_PROOFS = 3, 12
+"""The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
+
 MOST_READINGS = 4
 """The most formulas that one verdict names."""
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
-    (r"[IJ]_?(p|t|s|a|c|g|cm|0|n|[xyzO1-3A-D]|([xyz1-3])\2)?",
+    (r"I(_bar)?_?(xy|yx|yz|zy|xz|zx|12|21|23|32|13|31)", ("product of inertia",)),
+    (r"[IJ](_bar)?_?(p|t|s|a|c|g|cm|0|n|[xyzOPQGC1-3A-D]|([xyz1-3]_?[1-3]?)\3)?",
      ("moment of inertia", "inertia tensor", "parallel-axis")),
     (r"(omega|w|Omega)_?(p|pr|prec)", ("precession",)),
     (r"w", ("angular velocity", "precession", "spin", "rate at", "frequency", "quaternion")),
     (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "precession", "spin", "rate at", "frequency")),
     (r"[pqr]", ("angular velocity", "angle rates", "distance of", "vector", "Rodrigues", "quaternion")),
-    (r"d(phi|theta|psi|alpha|beta|gamma)", ("angle rates", "precession", "spin")),
+    (r"(d(phi|theta|psi|alpha|gamma)|(phi|theta|psi)_?dot)(_?[1-3])?", ("angle rates", "precession", "spin")),
+    (r"dbeta(_?[0-4])?", ("angle rates", "quaternion rates")),
+    (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]", ("quaternion", "Rodrigues parameters of")),
     (r"d(omega|w)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
     (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
     (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
     (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")),
     (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
-    (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE", ("kinetic energy", "torque", "rotation matrix", "period", "energy of")),
+    (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE",
+     ("kinetic energy", "torque", "rotation matrix", "period", "energy of", "Jacobian")),
     (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
     (r"V|U|E_?p|PE", ("potential", "work")),
     (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
-    (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
+    (r"M", ("torque", "angular momentum of")), (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
     (r"P(_?rot)?", ("power",)),
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
@@ -103,13 +126,13 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         For a side that cannot be read.
     """
     _ = claim.equation  # refuses a side that cannot be read
-    readings = _readings(claim, named, named.formula, LEAST_SYMBOLS) or _with_other_products(claim, named)
+    readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
+    readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
         return Verdict("recognised", recognised_as=readings)
-    is_open = words_of(named) is not None or named.solve is None
-    edited = _nearest(claim, named) if repair and is_open else None
-    if edited is not None:
-        return edited
+    nearest = _nearest(claim, named) if repair else None
+    if nearest is not None:
+        return nearest
     if named.solve is None:
         reason = "its sides have no letter in common, and nothing here says what these quantities are"
     else:
@@ -129,12 +152,14 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
     return Verdict("recognised", recognised_as=readings) if readings else None
 
 
-def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
+def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
     """Return the known formulas that match after a change of sign of the products of inertia.
 
     Some authors define products of inertia as integrals without the minus sign.
     """
-    for edit in _edits(claim, named.formula):
+    if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in _letters(formula)):
+        return ()
+    for edit in _edits(claim, formula):
         if edit.code == "inertia_product_sign":
             readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
             return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
@@ -143,14 +168,109 @@ def _with_other_products(claim: Claim, named: NamedFormula) -> tuple[Identificat
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
+    near = _near(claim, named)
+    is_open = words_of(named) is not None or named.solve is None
+    return _edited(claim, named) if near is None and is_open else near
+
+
+def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
+    """Return the verdict "doubtful" if a single part keeps the formula from being a known one; otherwise None."""
+    words = words_of(named)
+    nearby = near_formulas(claim, named, lambda known: _is_meant(known, words))
+    plain = _plain(named)
+    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
+    of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
+    shifted = next(of_bodies, False)
+    repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
+    tried: set[Node] = set()
+    for near in nearby:
+        if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
+            continue
+        tried.add(near.tree)
+        if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
+            continue
+        readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
+        if readings and not _has_equal(claim, near.tree, repairs):
+            repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
+    if not repairs:
+        return None
+    (first, readings), *_ = repairs.values()
+    diagnosis = Diagnosis(first.code, FAULT_DESCRIPTIONS[first.code])
+    return Verdict(
+        "doubtful",
+        diagnosis=diagnosis,
+        repairs=tuple(repair for repair, _ in repairs.values()),
+        recognised_as=readings,
+    )
+
+
+def _is_of_body(code: str, known: str) -> bool:
+    """Return whether a formula has another number or term than the moment of a body.
+
+    It may be right for another body; a larger moment may be that about a parallel axis.
+    """
+    return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
+
+
+def _misfit(name: str, known: str) -> float:
+    """Return how much a known formula differs from what a name says, and how rarely books have its body or sequence."""
+    sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
+    return _misplaced(name, known) + any(body in known for body in RARE) + sequence
+
+
+def _is_meant(known: Known, words: Sequence[str] | None) -> bool:
+    return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known.name) for word in words)
+
+
+def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
+    """Return whether one of several formulas is equal to a formula."""
+    interpreter = claim.interpreter()
+    value = interpreter.read(tree)
+    return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
+
+
+def _is_evident(named: NamedFormula, near: Near) -> bool:
+    """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
+    letters, words = _letters(named.formula), words_of(named)
+    is_new = not _letters(near.tree) <= letters
+    if is_new and len(letters) < LEAST_SYMBOLS_EDITED:
+        return False
+    if near.has_other_unit and near.code in SAFE_BY_UNIT:
+        return words is not None
+    is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
+    if is_general and not (near.code == "wrong_symbol" and len(letters) >= MANY_LETTERS):
+        return False
+    entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
+    is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
+    if is_matrix_given and len(entries) >= MANY_ENTRIES:
+        return True
+    if words is None:
+        return len(letters) >= MANY_LETTERS
+    is_sum = _has_terms(named.formula)
+    if near.code == "sign_of_term" and not is_sum:
+        return False  # the direction of an axis or angle may be the other one
+    is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
+    least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
+    return len(letters) >= least
+
+
+def _has_terms(formula: Node) -> bool:
+    return any(node.kind in ("sum", "list") for _, node in walk(formula))
+
+
+def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
+    """Return the verdict "doubtful" if a usual fault, undone, makes the formula a known one; otherwise None."""
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
     letters = _letters(named.formula)
+    if len(letters) < LEAST_SYMBOLS_EDITED + (not _has_terms(named.formula)):
+        return None
     for edit in _edits(claim, named.formula):
         if _letters(edit.tree) < letters:  # the formula may be a more general one, with a letter of its own
             continue
         all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
-        if not readings:
+        is_open = edit.code in ("sign_of_term", "overall_sign") and not _has_terms(named.formula)
+        if not readings or is_open or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:
@@ -163,8 +283,12 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _letters(formula: Node) -> set[str]:
-    """Return the names in a formula."""
-    return {str(node.value) for _, node in walk(formula) if node.kind == "name"}
+    """Return the names of the symbols and of the functions of time in a formula."""
+    return {
+        str(node.value)
+        for _, node in walk(formula)
+        if (node.kind == "name" and node.value != "t") or (node.kind == "call" and node.args == (TIME,))
+    }
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
@@ -248,9 +372,10 @@ def _without_function(value: Any) -> tuple[Any, str]:
 
 def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, by the name of the quantity and the units of its symbols."""
-    if known.how and (not matrix or "sign" in known.how or "times" in known.how):
-        return False
     words = words_of(named)
+    is_multiple = "times" in known.how and words is not None
+    if known.how and (not matrix or "sign" in known.how or is_multiple):
+        return False
     if words is not None and not any(word in known.name for word in words):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
@@ -275,21 +400,25 @@ def _plain(named: NamedFormula) -> str:
     return f"d{name}" if named.is_rate or dots else name
 
 
+def _misplaced(name: str, known: str) -> int:
+    """Return whether a known formula has another component or frame than the name of a quantity says: 0, 1 or 2."""
+    words = known.replace(",", "").split()
+    places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
+              (after in ("component", "axis"))]  # fmt: skip
+    misnamed = any(name[-1] in "".join(COMPONENTS.values()) and name[-1] not in letters for letters in places)
+    turned = re.fullmatch(r"[pqr]|(omega|w)_?[1-3]", name) is not None and "space frame" in known
+    return int(misnamed) + int(turned)
+
+
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
     """Return how implausible a known formula is as the meaning of a claim.
 
     It is implausible if it has another component or frame than the name says, symbols of another axis, or new names.
     """
-    words = known.name.replace(",", "").split()
-    places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
-              (after in ("component", "axis"))]  # fmt: skip
-    index = _plain(named)[-1]
-    misnamed = any(index in "".join(COMPONENTS.values()) and index not in letters for letters in places)
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
-    turned = re.fullmatch(r"[pqr]|(omega|w)_?[1-3]", _plain(named)) is not None and "space frame" in known.name
-    return int(misnamed) + int(turned), moved, len(known.mapping)
+    return _misplaced(_plain(named), known.name), moved, len(known.mapping)
 
 
 def _rarity(known: Identification) -> tuple[bool, int]:
@@ -297,6 +426,11 @@ def _rarity(known: Identification) -> tuple[bool, int]:
 
     Among these, formulas with an Euler sequence that books use often come first.
     """
-    sequences = [word for word in known.name.split() if word in SEQUENCES]
+    return bool(known.how), _rank_of_sequence(known.name)
+
+
+def _rank_of_sequence(known: str) -> int:
+    """Return the place of the Euler sequence in the name of a known formula among those that books use, from 0."""
+    sequences = [word for word in known.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
-    return bool(known.how), max(usual, default=0)
+    return max(usual, default=0)

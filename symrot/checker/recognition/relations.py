@@ -32,6 +32,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia.solids import solid
+from symrot.kinematics import quaternion
 from symrot.kinematics.euler import rate_jacobian
 
 __all__ = ["OTHERS", "Relation", "primitive", "relations", "solved"]
@@ -300,6 +301,8 @@ def _free() -> Iterator[Relation]:
     ratio = cancel((omega[1] / omega[2]) / (own[1] / own[2]))  # of the tangents of the angles of omega and momentum
     yield Relation("the angles of momentum and angular velocity to the axis of a free symmetric body", FREE,
                    tan(TILT) - ratio * tan(THETA), {})  # fmt: skip
+    norm = quaternion.unit_relation(symbols.quaternion)
+    yield Relation("the unit norm of a quaternion", "derivations/euler_parameters.md", norm, {})
     turning = symbols.Omega
     slow = alpha.subs(B, A)
     title = "a free symmetric body whose angular velocity precesses"
@@ -311,7 +314,7 @@ def _free() -> Iterator[Relation]:
 
 def _planar() -> Iterator[Relation]:
     """Yield the torques that hold the axis of a body which rotates about z, with products of inertia."""
-    about, rate = Matrix([0, 0, symbols.omega_z]), Matrix([0, 0, symbols.domega_3])
+    about, rate = Matrix([0, 0, symbols.omega_3]), Matrix([0, 0, symbols.domega_3])
     needed = TENSOR * rate + about.cross(TENSOR * about)
     for torque, value in zip(symbols.torque_b, needed, strict=True):
         yield Relation("rotation about the z axis", EULER, torque - value, {torque: "torque of"})

@@ -6,8 +6,9 @@ reader means that: omega_2 and omega_3 keep their axes.
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 
-__all__ = ["component", "is_consistent"]
+__all__ = ["axes_of", "component", "is_consistent"]
 
 AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3, "3z")) for letter in letters}
 """Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
@@ -20,7 +21,7 @@ CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 
-RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3])")
+RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|(\w+?)_d*dot|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3]|L_[1-3])")
 """A rate, or a value in time, as text; its group is the name of the quantity."""
 
 ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
@@ -46,7 +47,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
-    axes = [(_axes(known), _axes(new)) for known, new in pairs]
+    axes = [(axes_of(known), axes_of(new)) for known, new in pairs]
     entries = [(ENTRY.fullmatch(known), ENTRY.fullmatch(new)) for known, new in pairs]
     places = [(known.groups(), new.groups()) for known, new in entries if known and new]
     return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
@@ -64,14 +65,15 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
     """Return the component of a known formula with the name of a quantity, as a pair of a renaming; or no pair."""
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
-    if parallel and _axes(quantity):
+    if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
     word, _, rest = known.partition(" ")
-    if word not in COMPONENTS or not rest.startswith("component") or not _axes(quantity):
+    if word not in COMPONENTS or not rest.startswith("component") or not axes_of(quantity):
         return []
     return [(f"component_{COMPONENTS[word]}", quantity)]
 
 
+@cache
 def _angle(name: str) -> str:
     """Return the name of the quantity of which a name is a rate or a value in time; any other name as it is."""
     while (inner := RATE.fullmatch(name)) is not None:
@@ -79,9 +81,12 @@ def _angle(name: str) -> str:
     return name
 
 
-def _axes(name: str) -> frozenset[int]:
+@cache
+def axes_of(name: str) -> frozenset[int]:
     """Return the axes in the index of a name: {1, 2} for I_xy, {3} for omega_3 and for C; empty without an index."""
     name = re.sub("(_bar|_prime)+$", "", name)
+    if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):
+        return frozenset()  # a moment about a point O, or a value at the start
     if name in LETTERS:
         return frozenset({LETTERS[name]})
     index = re.fullmatch(r"(?:[A-Za-z]+?_?|\w+_)([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)

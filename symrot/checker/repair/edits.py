@@ -25,6 +25,7 @@ FAULT_DESCRIPTIONS = {
     "overall_sign": "a whole side has the wrong sign",
     "commutator_order": "the factors of a matrix product are exchanged",
     "factor": "a factor is wrong, missing or too many",
+    "exponent": "a power is wrong, such as a square that is missing",
     "half_angle": "an angle is used in place of its half",
     "double_half_angle": "an angle is used in place of its double",
     "sin_cos_swap": "sine and cosine are exchanged",
@@ -63,6 +64,9 @@ COST = {
     "solved_sign": 0.85, "solved_factor_2": 1.16, "solved_rational_factor": 1.3, "solved_number": 1.25,
     "solved_factor": 1.22, "solved_factor_of_number": 0.5, "solved_term_of_sum": 1.5, "solved_term": 1.65,
     "solved_swap": 1.0, "solved_neighbour": 1.0, "solved_symbol": 1.2, "solved_matrix_term": 0.04,
+    # a part of a formula near a known one: per factor e between two numbers, a fraction in place of a number, a power
+    # other than the square, and a function other than the one that is often confused with it
+    "exponent": 1.1, "per_factor_e": 0.1, "no_integer": 0.15, "not_a_square": 0.1, "other_function": 0.1,
     # growth with the size of the inserted formula, and with the depth of the piece
     "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
