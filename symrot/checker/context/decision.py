@@ -359,7 +359,7 @@ def _diagnosed(
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
-        against = claim.with_relation(("==", named.formula, target), alternatives=())
+        against = replace(claim, editable=("left",)).with_relation(("==", named.formula, target), alternatives=())
         diagnosis, repairs = diagnose(against, replace(decision, requires=(), verdict="false"))
     except (InputError, TooLarge):
         return none, ()

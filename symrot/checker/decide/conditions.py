@@ -8,6 +8,7 @@ to vanish.
 import re
 from collections.abc import Sequence
 from functools import reduce
+from typing import Any
 
 from sympy import Expr
 from sympy.core.function import AppliedUndef
@@ -71,16 +72,21 @@ def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypo
     """Return whether one side of each wrong entry lacks one of the symbols of a condition such as ``A = B``.
 
     An author who silently assumes ``A = B`` writes only one of the two. A text with both, such as ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way. If a hypothesis relates a symbol to the symbols of a side, the side counts
-    as having it.
+    ``(B - A) w``, is wrong in another way, and so is a text that has both on one side and neither on the other. If a
+    hypothesis relates a symbol to the symbols of a side, the side counts as having it.
     """
     (formula,) = requirement.zeros
+    symbols = formula.free_symbols
 
-    def involves(side: Expr, symbol: Expr) -> bool:
+    def involved(side: Expr) -> set[Any]:
         own = side.free_symbols
-        return symbol in own or any(symbol in h.free_symbols and own & h.free_symbols for h in hypotheses)
+        related = (hypothesis.free_symbols for hypothesis in hypotheses if own & hypothesis.free_symbols)
+        return symbols & own.union(*related)
 
-    return all(any(not involves(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
+    def one_sided(pair: tuple[Expr, Expr]) -> bool:
+        return any(symbols <= side.free_symbols and not involved(other) for side, other in (pair, pair[::-1]))
+
+    return all(any(involved(side) != symbols for side in pair) and not one_sided(pair) for pair in sides)
 
 
 def _associated(first: PolyElement, second: PolyElement) -> bool:

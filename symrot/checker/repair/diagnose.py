@@ -170,10 +170,15 @@ class _Search:
         left, right, *_ = self.canonical_form(changes)
         return left == right
 
-    def is_constant(self, equation: Equation) -> bool:
-        """Return whether a side with symbols became a number other than zero, as ``x/y`` does in ``x/(x/y)/y``."""
+    def cancels(self, equation: Equation) -> bool:
+        """Return whether a repaired side cancels to a number, as ``x/y`` does in ``x/(x/y)/y``, or both as in ``x/x``.
+
+        A side that becomes zero is no such side.
+        """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
+        if equation.divisors and not any(_symbols(after) or getattr(after, "is_Matrix", False) for _, after in sides):
+            return True
         return any(after != 0 and _symbols(before) and not _symbols(after) for before, after in sides)
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
@@ -208,7 +213,7 @@ class _Search:
             except InputError:
                 continue
             self.products += decision.products
-            if decision.verdict == "true" and not self.is_constant(equation):
+            if decision.verdict == "true" and not self.cancels(equation):
                 parts = {change.place: written(change.edit.tree) for change in candidate.changes}
                 repairs.append(Repair(text, code, round(cost, 3), edited=parts))
                 self.accepted.append(candidate)

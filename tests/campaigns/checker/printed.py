@@ -32,7 +32,7 @@ import symrot
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.interface import is_latex
-from symrot.checker.latex.reader import Names, latex_reading
+from symrot.checker.latex.reader import latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
 from symrot.checker.recognition.relations import primitive
@@ -126,7 +126,7 @@ def _equations(source: str) -> list[tuple[list[Expr], list[Expr]]]:
     Only the other side is taken of an equation that gives a matrix a name.
     """
     try:
-        reading = latex_reading(source, Names()) if is_latex(source) else readings_of(source)[0]
+        reading = latex_readings(source)[0] if is_latex(source) else readings_of(source)[0]
         equations = [claim.equation for line in claims_of_reading(reading, source) for claim in line]
     except SymrotError:
         return []
