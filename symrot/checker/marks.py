@@ -5,7 +5,11 @@ from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
 from html import escape
 
-__all__ = ["carets", "changed_spans", "html_with_marks", "latex_with_marks"]
+from symrot.checker.claim.reader import Relation, read_relation
+from symrot.checker.claim.tree import Node, text
+from symrot.errors import InputError
+
+__all__ = ["carets", "changed_entry", "changed_spans", "html_with_marks", "latex_with_marks"]
 
 Span = tuple[int, int]
 """Start and end of a piece of a text."""
@@ -37,6 +41,35 @@ def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
         else:
             spans.append(span)
     return tuple(spans)
+
+
+def changed_entry(relation: Relation, repaired: str) -> tuple[int, int] | None:
+    """Return the only entry of a matrix in which a repaired equation differs from an equation, or None."""
+    try:
+        other = read_relation(repaired.partition(" with ")[0])
+    except InputError:
+        return None
+    entries: list[tuple[int, int]] = []
+    for old, new in zip(relation[1:], other[1:], strict=True):
+        if text(old) == text(new):
+            continue
+        before, after = _rows(old), _rows(new)
+        if before is None or after is None or [len(row) for row in before] != [len(row) for row in after]:
+            return None
+        entries += [
+            (n + 1, m + 1)
+            for n, pair in enumerate(zip(before, after, strict=True))
+            for m, cells in enumerate(zip(*pair, strict=True))
+            if text(cells[0]) != text(cells[1])
+        ]
+    return entries[0] if len(entries) == 1 else None
+
+
+def _rows(side: Node) -> list[tuple[Node, ...]] | None:
+    """Return the rows of a matrix that is written with its entries, or None."""
+    if side.kind != "call" or side.value != "Matrix" or side.args[0].kind != "list":
+        return None
+    return [row.args if row.kind == "list" else (row,) for row in side.args[0].args]
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:

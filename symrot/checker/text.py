@@ -13,12 +13,11 @@ from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
-from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
+from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim.tree import text as text_of
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
-from symrot.checker.marks import changed_spans
+from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
@@ -216,36 +215,7 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     if claim.relation is None:
         return replace(repair, text=text)
     changed = changed_spans(notation.rewritten(relation_text(claim.relation)), text)
-    return replace(repair, text=text, changed=changed, entry=_entry_changed(claim.relation, repair.text))
-
-
-def _entry_changed(relation: Relation, repaired: str) -> tuple[int, int] | None:
-    """Return the only entry of a matrix in which a repaired equation differs from an equation, or None."""
-    try:
-        other = read_relation(repaired.partition(" with ")[0])
-    except InputError:
-        return None
-    entries: list[tuple[int, int]] = []
-    for old, new in zip(relation[1:], other[1:], strict=True):
-        if text_of(old) == text_of(new):
-            continue
-        before, after = _rows(old), _rows(new)
-        if before is None or after is None or [len(row) for row in before] != [len(row) for row in after]:
-            return None
-        entries += [
-            (n + 1, m + 1)
-            for n, pair in enumerate(zip(before, after, strict=True))
-            for m, cells in enumerate(zip(*pair, strict=True))
-            if text_of(cells[0]) != text_of(cells[1])
-        ]
-    return entries[0] if len(entries) == 1 else None
-
-
-def _rows(side: Node) -> list[tuple[Node, ...]] | None:
-    """Return the rows of a matrix that is written with its entries, or None."""
-    if side.kind != "call" or side.value != "Matrix" or side.args[0].kind != "list":
-        return None
-    return [row.args if row.kind == "list" else (row,) for row in side.args[0].args]
+    return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:

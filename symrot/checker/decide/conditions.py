@@ -80,8 +80,8 @@ def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypo
 
     def involved(side: Expr) -> set[Any]:
         own = side.free_symbols
-        related = (hypothesis.free_symbols for hypothesis in hypotheses if own & hypothesis.free_symbols)
-        return symbols & own.union(*related)
+        groups = [own, *(h.free_symbols for h in hypotheses if own & h.free_symbols)]
+        return {symbol for symbol in symbols if any(symbol in group for group in groups)}
 
     def one_sided(pair: tuple[Expr, Expr]) -> bool:
         return any(symbols <= side.free_symbols and not involved(other) for side, other in (pair, pair[::-1]))

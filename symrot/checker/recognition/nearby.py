@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
+from symrot.checker.claim.tree import Node, Path, number, replaced, walk
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
@@ -35,7 +35,7 @@ from symrot.checker.recognition.parts import (
     values_of,
     variants,
 )
-from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, normalise_factors
+from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import UndefinedValue, points
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
@@ -319,7 +319,7 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 
 def _repaired(formula: Node, path: Path, made: Node) -> Node:
-    return normalise_factors(_flattened(replaced(formula, path, lambda _: made)))
+    return normalise_factors(flattened(replaced(formula, path, lambda _: made)))
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
@@ -406,18 +406,6 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
     if tree.kind == "name":
         return nodes.get(str(tree.value), tree)
     return Node(tree.kind, tree.value, tuple(_renamed(child, nodes) for child in tree.args))
-
-
-def _flattened(node: Node) -> Node:
-    """Return a tree in which sums inside of sums are merged, and products inside of products."""
-    args = [_flattened(child) for child in node.args]
-    if node.kind == "sum":
-        return sum_of([term for term in args if term.kind != "number" or term.value], node.span)
-    if node.kind == "product":
-        return product(args, node.span)
-    if node.kind == "neg":
-        return negated(args[0])
-    return Node(node.kind, node.value, tuple(args), node.span)
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, Path, negated, number, product, sum_of
 from symrot.checker.repair.dual import minus
-from symrot.checker.repair.edits import COST, OPPOSITE, neighbours, normalise_factors
+from symrot.checker.repair.edits import COST, OPPOSITE, neighbours, scaled
 from symrot.checker.repair.filter import at, matrix_entries
 from symrot.checker.repair.points import Point, UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shape_of, times
@@ -261,7 +261,7 @@ def multiples(part: Part) -> Iterator[Change]:
             yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
         else:
             cost = COST["solved_factor_2" if ratio in (2, Fraction(1, 2)) else "solved_rational_factor"]
-            yield Change(_scaled(part.node, ratio), "factor", cost)
+            yield Change(scaled(part.node, ratio), "factor", cost)
 
 
 class Variant(NamedTuple):
@@ -323,7 +323,7 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
         cost = COST["sin_cos_swap"] + (0.0 if OPPOSITE[node.value] == name else COST["other_function"])
         yield Variant(Change(replace(node, value=name), "sin_cos_swap", cost), tuple(map(FUNCTIONS[name], own)))
     for multiple, code in MULTIPLES.items():
-        made = replace(node, args=(_scaled(angle, multiple),))
+        made = replace(node, args=(scaled(angle, multiple),))
         angles = tuple(float(multiple) * value for value in own)
         yield Variant(Change(made, code, COST[code]), tuple(map(FUNCTIONS[node.value], angles)))
     for other, angles in (*letters.angles.items(), *((n, v) for n, v in letters.atoms.items() if n == LACKING)):
@@ -397,15 +397,6 @@ def _exchanged(tree: Node, angle: Node) -> Node:
 
 
 _VARIANTS = (_of_letter, _of_exponent, _of_function, _of_factor, _of_terms)
-
-
-def _scaled(term: Node, ratio: Fraction) -> Node:
-    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
-    size = abs(ratio)
-    above = [] if size.numerator == 1 else [number(size.numerator)]
-    below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
-    made = normalise_factors(product([*above, term, *below])) if above or below else term
-    return negated(made) if ratio < 0 else made
 
 
 def rational(values: Sequence[float]) -> Fraction | None:

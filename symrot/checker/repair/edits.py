@@ -13,7 +13,17 @@ from fractions import Fraction
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
-__all__ = ["COST", "FAULT_DESCRIPTIONS", "OPPOSITE", "Edit", "neighbours", "normalise_factors", "single_edits"]
+__all__ = [
+    "COST",
+    "FAULT_DESCRIPTIONS",
+    "OPPOSITE",
+    "Edit",
+    "flattened",
+    "neighbours",
+    "normalise_factors",
+    "scaled",
+    "single_edits",
+]
 
 FAULT_DESCRIPTIONS = {
     "none": "",
@@ -406,3 +416,24 @@ def normalise_factors(node: Node) -> Node:
     if not front and (not rest or rest[0].kind == "inv"):
         front = [number(1)]
     return product([*front, *rest, *back], node.span)
+
+
+def scaled(term: Node, ratio: Fraction) -> Node:
+    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
+    size = abs(ratio)
+    above = [] if size.numerator == 1 else [number(size.numerator)]
+    below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
+    made = normalise_factors(product([*above, term, *below])) if above or below else term
+    return negated(made) if ratio < 0 else made
+
+
+def flattened(node: Node) -> Node:
+    """Return a tree in which sums inside of sums are merged, and products inside of products, without terms 0."""
+    args = tuple(map(flattened, node.args))
+    if node.kind == "sum":
+        return sum_of([term for term in args if term.kind != "number" or term.value], node.span)
+    if node.kind == "product":
+        return product(list(args), node.span)
+    if node.kind == "neg":
+        return negated(args[0])
+    return node if args == node.args else Node(node.kind, node.value, args, node.span)
