@@ -118,13 +118,17 @@ def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mappi
 def _may_be_broken(condition: str) -> bool:
     """Return whether quantities with their usual signs may break a condition.
 
-    It is one on an angle, such as ``sin(theta) != 0``, or an inequality with a difference. A length, a mass or a moment
-    is positive by its meaning.
+    It is one on an angle, such as ``sin(theta) != 0``, or an inequality with a difference, or one between two
+    quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment is positive by its meaning.
     """
     sign, *trees = read_relation(condition)
-    nodes = [node for tree in trees for _, node in walk(tree)]
+    sides = [[node for _, node in walk(tree)] for tree in trees]
+    nodes = [node for side in sides for node in side]
     is_on_an_angle = any(node.kind == "call" and node.value in ANGLES for node in nodes)
-    return is_on_an_angle or (sign != "!=" and any(node.kind == "neg" for node in nodes))
+    has_difference = any(node.kind == "neg" for node in nodes) or all(
+        any(node.kind == "name" for node in side) for side in sides
+    )
+    return is_on_an_angle or (sign != "!=" and has_difference)
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:

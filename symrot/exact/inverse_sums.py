@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
+from sympy import Abs, Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
@@ -158,21 +158,34 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(sqrt(P), x)`` is an angle w, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w).
+    """Return where ``atan2(y, x)`` is an angle w, if one of y and x is a root or an absolute value.
 
-    It is w for w in [0, pi] and positive r.
+    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), it is w for w in [0, pi] and positive r. For
+    ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), it is w for w in [-pi/2, pi/2] and positive r.
     """
     y, x = leaf.args
-    radius = (x / cos(angle)).cancel()
-    if not (y.is_Pow and y.exp == Rational(1, 2)) or radius.has(cos(angle)) or radius.is_nonpositive:
-        return None
-    square = radius**2 * sin(angle) ** 2
-    with suppress(InputError):  # an angle that cannot be read proves nothing
-        other = FormulaRing([y.base, square], ring.hypotheses, ring.domain)
-        further = proof(other, other.difference(y.base, square).numerator)
-        if further is not None:
-            return PrincipalValueProof((angle, pi - angle), (radius,), (other, *further))
+    for root, other_part, own, other_function, ends in (
+        (y, x, sin, cos, (angle, pi - angle)),
+        (x, y, cos, sin, (angle + pi / 2, pi / 2 - angle)),
+    ):
+        below = _square(root)
+        radius = (other_part / other_function(angle)).cancel()
+        if below is None or radius.has(other_function(angle)) or radius.is_nonpositive:
+            continue
+        square = radius**2 * own(angle) ** 2
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other = FormulaRing([below, square], ring.hypotheses, ring.domain)
+            further = proof(other, other.difference(below, square).numerator)
+            if further is not None:
+                return PrincipalValueProof(ends, (radius,), (other, *further))
     return None
+
+
+def _square(formula: Expr) -> Expr | None:
+    """Return the square of a square root or an absolute value; None for any other formula."""
+    if formula.is_Pow and formula.exp == Rational(1, 2):
+        return formula.base
+    return formula.args[0] ** 2 if isinstance(formula, Abs) else None
 
 
 _PRINCIPAL = {asin: (sin, -pi / 2, pi / 2), acos: (cos, Integer(0), pi), atan: (tan, -pi / 2, pi / 2)}

@@ -10,10 +10,10 @@ from symrot.checker.recognition.parts import LACKING, Letters, PointOfLetters, i
 from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
-    ("T = ½ I ω", "exponent", "T = I*ω^2/2"), ("H_G = I_G omega^2", "exponent", "H_G = I_G*omega"),
+    ("T = ½ I ω", "exponent", "T = 1/2*I*ω^2"), ("H_G = I_G omega^2", "exponent", "H_G = I_G*omega"),
     ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m*(a^2 + b^2)/12"),
     ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m*(a^2 + b^2)/12"),
-    ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)/5"),
+    ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m/5*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)"),
     ("p_phi = (I_1 cos^2 theta + I_3 sin^2 theta) phi' + I_3 psi' cos theta", "sin_cos_swap",
      "p_phi = (I_1*sin(theta)^2 + I_3*cos(theta)^2)*phi' + I_3*psi'*cos(theta)"),
     ("phi' = p + q sin phi + r cos phi tan theta", "factor", "phi' = p + q*sin(phi)*tan(theta) + r*cos(phi)*tan(theta)"),

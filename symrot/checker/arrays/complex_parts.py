@@ -12,6 +12,7 @@ __all__ = ["imaginary_unit", "with_parts"]
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)
 LETTERS = ("i", "j", "I")
+CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
 MOST_FACTORS = 16
 """The highest power of a complex number that is multiplied out."""
 
@@ -19,17 +20,41 @@ MOST_FACTORS = 16
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """Return a letter i, j or I that is the imaginary unit, where it occurs; None if no formula has one.
 
-    It is in an exponent of e or in exp(..), or it is a factor of nothing but numbers and sines.
+    It is in an exponent of e or in exp(..), or it is a factor of nothing but numbers and sines. A letter i or j is also
+    the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and its conjugate, and if it
+    is inside of a sine next to hyperbolic functions.
     """
+    nodes = [node for tree in trees for _, node in walk(tree)]
     for letter in LETTERS:
-        for tree in trees:
-            for _, node in walk(tree):
-                inside = _exponent(node)
-                if inside is not None and (own := _letter_in(inside, letter)):
-                    return own
-                if node.kind == "product" and (own := _factor_of_sines(node, letter)):
-                    return own
-    return None
+        for node in nodes:
+            inside = _exponent(node)
+            if inside is not None and (own := _letter_in(inside, letter)):
+                return own
+            if node.kind == "product" and (own := _factor_of_sines(node, letter)):
+                return own
+    return next((own for letter in LETTERS[:2] if (own := _evident(trees, nodes, letter))), None)
+
+
+def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
+    """Return the place of a letter that can only be the imaginary unit, because of the other formulas; or None."""
+    own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
+    if own is None:
+        return None
+    names = {node.value for node in nodes if node.kind == "name"} - {"pi"}
+    functions = {str(node.value) for node in nodes if node.kind == "call"}
+    is_alone = names == {letter} and own not in trees
+    has_both = bool(functions & {*CIRCULAR}) and bool(functions & {*HYPERBOLIC}) and any(
+        node.kind == "call" and node.value in (*CIRCULAR, *HYPERBOLIC) and _letter_in(node.args[0], letter)
+        for node in nodes
+    )  # fmt: skip
+    sums = [node for node in nodes if node.kind == "sum" and _letter_in(node, letter)]
+    has_conjugates = any(_conjugate(node, letter) in sums for node in sums)
+    return own if (is_alone or has_both or has_conjugates) and len(functions & {"diff", "Matrix"}) == 0 else None
+
+
+def _conjugate(node: Node, letter: str) -> Node:
+    """Return a sum in which the terms with the imaginary unit have the other sign."""
+    return sum_of([negated(term) if _letter_in(term, letter) else term for term in node.args], node.span)
 
 
 def _exponent(node: Node) -> Node | None:
@@ -135,6 +160,8 @@ class _Splitter:
 
     def inverse(self, node: Node, inner: Sequence[Parts]) -> Parts:
         ((a, b),) = inner
+        if _is_zero(a):
+            return ZERO, negated(Node("inv", None, (b,)))
         below = Node("inv", None, (_plus(_square(a), _square(b)),))
         return _of(a, below), negated(_of(b, below))
 
@@ -160,9 +187,23 @@ class _Splitter:
         ((a, b),) = inner
         return _of(_call("cos", a), _call("cosh", b)), negated(_of(_call("sin", a), _call("sinh", b)))
 
+    def hyperbolic_sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("sinh", a), _call("cos", b)), _of(_call("cosh", a), _call("sin", b))
+
+    def hyperbolic_cosine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("cosh", a), _call("cos", b)), _of(_call("sinh", a), _call("sin", b))
+
+    def tangent(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return _times(self.sine(node, inner), self.inverse(node, [self.cosine(node, inner)]))
+
+    def hyperbolic_tangent(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return _times(self.hyperbolic_sine(node, inner), self.inverse(node, [self.hyperbolic_cosine(node, inner)]))
+
     rules: ClassVar[Mapping[str, Callable[["_Splitter", Node, Sequence[Parts]], Parts]]] = {
         "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute, "sin": sine,
-        "cos": cosine,
+        "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
     """Kind of a formula, or the function that it calls -> the rule for its parts."""
 

@@ -263,7 +263,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
                 changes += ((part.path, change) for change in _changes(search, part))
-    trees = [(cost, code, _repaired(named.formula, path, made)) for path, (made, code, cost) in changes]
+    trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
         for part in parts(_tree(known), own, actual):
@@ -318,8 +318,10 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
     yield from (variant.change for variant in search.matching(part))
 
 
-def _repaired(formula: Node, path: Path, made: Node) -> Node:
-    return normalise_factors(flattened(replaced(formula, path, lambda _: made)))
+def _repaired(formula: Node, path: Path, change: Change) -> Node:
+    """Return a formula with a changed part; its other numbers stay where they are."""
+    tree = flattened(replaced(formula, path, lambda _: change.made))
+    return normalise_factors(tree) if change.code == "factor" else tree
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:

@@ -177,9 +177,8 @@ class _Search:
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
-        if equation.divisors and not any(_symbols(after) or getattr(after, "is_Matrix", False) for _, after in sides):
-            return True
-        return any(after != 0 and _symbols(before) and not _symbols(after) for before, after in sides)
+        bare = [(before, after) for before, after in sides if after != 0 and not _symbols(after)]
+        return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
         """Return the first candidates that the exact engine proves, at most ``most``, no two with the same value."""
