@@ -6,7 +6,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from symrot.checker.claim.claims import Claim, relation_text
-from symrot.checker.claim.named_formula import NamedFormula, named_formula, related_formula
+from symrot.checker.claim.named_formula import NamedFormula, named_formula, open_formula, related_formula
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
@@ -46,7 +46,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            decision, verdict = _on_name(claim, repair, named_formula) or _decide(claim)
+            named = _on_name(claim, repair, named_formula) or _on_name(claim, repair, open_formula)
+            decision, verdict = named or _decide(claim)
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.matrices import as_rotations
+from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
@@ -23,7 +23,7 @@ from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.conversion import Measured, measured_text
-from symrot.checker.verdict import Repair, Verdict
+from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.errors import InputError
 
 __all__ = ["verdict_on_readings", "verdict_on_text"]
@@ -176,6 +176,10 @@ def verdict_on_reading(
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
+    if several and verdict.verdict == "conditional":
+        conditions = [part.requires for _, part in parts if part.requires]
+        both_signs = len(conditions) == 2 and all(chain.both_signs for chain in reading.lines)
+        verdict = _with_all_conditions(verdict, conditions, both_signs)
     echo = _text_of(reading, notation)
     echo = echo if _differs(echo, source) else ""
     notes = verdict.notes
@@ -219,17 +223,24 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations."""
-    definitions, names = as_rotations(claim.define)
-    if not names:
-        return verdict
-    other = check_claim(replace(claim, define=tuple(definitions)), repair=False)
-    if other.verdict != "true":
-        return verdict
-    conditions = tuple(f"{name} is a rotation" for name in names)
-    return replace(
-        other, verdict="conditional", conditions=conditions, requires=conditions, counterexample=verdict.counterexample
-    )
+    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations.
+
+    Each matrix that suffices by being a rotation is an alternative; if no single one does, all of them have to be.
+    """
+    names = matrices_of_entries(claim.define)
+    groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
+    conditions: list[str] = []
+    for group in groups:
+        if len(group) > 1 and conditions:
+            break
+        other = check_claim(replace(claim, define=tuple(as_rotations(claim.define, group))), repair=False)
+        if other.verdict == "true":
+            conditions.append(" and ".join(f"{name} is a rotation" for name in group))
+            verdict = replace(
+                other, verdict="conditional", conditions=tuple(conditions), requires=tuple(conditions),
+                counterexample=verdict.counterexample,
+            )  # fmt: skip
+    return verdict
 
 
 def _has_indices(claim: Claim) -> bool:
@@ -276,6 +287,20 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
     claim_notes = [note for line in lines for claim in line for note in claim.notes]
     seconds = sum(verdict.seconds for verdict in verdicts)
     return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)
+
+
+def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
+    """Return the verdict on several equations that are conditional, with the conditions of all of them.
+
+    With ``both_signs``, the equations are the two that one with ± means, each with its own condition.
+    """
+    texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
+    others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
+    if both_signs:
+        required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
+    else:
+        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
+    return replace(verdict, requires=required, conditions=(*required, *others), diagnosis=Diagnosis("none", ""))
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:

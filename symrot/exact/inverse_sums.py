@@ -160,8 +160,9 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
     """Return where ``atan2(y, x)`` is an angle w, if one of y and x is a root or an absolute value.
 
-    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), it is w for w in [0, pi] and positive r. For
-    ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), it is w for w in [-pi/2, pi/2] and positive r.
+    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), it is w for w in [0, pi] and positive r.
+    For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), it is w for w in [-pi/2, pi/2] and
+    positive r.
     """
     y, x = leaf.args
     for root, other_part, own, other_function, ends in (

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
+from itertools import permutations
 from typing import ClassVar
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
@@ -42,7 +43,9 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
         return None
     names = {node.value for node in nodes if node.kind == "name"} - {"pi"}
     functions = {str(node.value) for node in nodes if node.kind == "call"}
-    is_alone = names == {letter} and own not in trees
+    is_alone = names == {letter} and not any(
+        first == own and second.kind == "number" for first, second in permutations(trees, 2)
+    )
     has_both = bool(functions & {*CIRCULAR}) and bool(functions & {*HYPERBOLIC}) and any(
         node.kind == "call" and node.value in (*CIRCULAR, *HYPERBOLIC) and _letter_in(node.args[0], letter)
         for node in nodes
@@ -140,9 +143,9 @@ class _Splitter:
             size = Node("call", "exp", (a,))
             return (size, ZERO) if _is_zero(b) else (_of(ONE if _is_zero(a) else size, _call("cos", b)),
                                                      _of(ONE if _is_zero(a) else size, _call("sin", b)))  # fmt: skip
-        inner = [self.parts(child) for child in node.args]
-        if all(_is_zero(imaginary) for _, imaginary in inner):
+        if _letter_in(node, self.letter) is None:
             return node, ZERO
+        inner = [self.parts(child) for child in node.args]
         rule = self.rules.get(node.kind if node.kind != "call" else str(node.value))
         if rule is None:
             raise self.fail(node, "a formula whose real and imaginary parts are known, such as exp, sin and powers,")

@@ -12,7 +12,10 @@ from symrot.checker.claim.shapes import Shape, shape_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import is_tensor
 
-__all__ = ["as_rotations", "bold_matrices", "matrix_of_entries", "used_columns", "used_matrices", "with_lengths"]
+__all__ = [
+    "as_rotations", "bold_matrices", "matrices_of_entries", "matrix_of_entries", "used_columns", "used_matrices",
+    "with_lengths",
+]  # fmt: skip
 
 OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
 UNIT_NAMES = ("I", "E", "I_3", "E_3")
@@ -29,11 +32,14 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
 
 
-def as_rotations(definitions: Sequence[tuple[str, Node]]) -> tuple[list[tuple[str, Node]], list[str]]:
-    """Return definitions in which each matrix of 3 x 3 entries is a rotation about any axis, and these matrices."""
-    names = [name for name, tree in definitions if tree == matrix_of_entries(name)]
-    made = [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
-    return made, names
+def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
+    """Return the names that are defined as matrices of any 3 x 3 entries."""
+    return [name for name, tree in definitions if tree == matrix_of_entries(name)]
+
+
+def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
+    """Return definitions in which the matrices ``names`` are rotations about any axis."""
+    return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
 
 
 def _rotation(name: str) -> Node:
@@ -104,15 +110,16 @@ def _of_matrix(node: Node) -> Sequence[Node]:
     """Return the formulas in a node that are matrices by their place: under a transpose, or in ``A B A^T``."""
     if node.kind == "transpose" or (node.kind == "call" and node.value in OF_MATRICES):
         return node.args
-    if node.kind == "call" and node.value == "cross" and all(side.kind == "product" for side in node.args):
+    if node.kind == "call" and node.value in ("cross", "dot") and all(side.kind == "product" for side in node.args):
         first, second = (side.args[0] for side in node.args)
         is_one = first == second and first.kind == "name" and first.value[0].isupper()
-        return (first,) if is_one else ()  # R a x R b
+        return (first,) if is_one else ()  # R a x R b, and R a . R b
     if node.kind == "product" and len(node.args) > 2:
         first, *between, last = (factor for factor in node.args if factor.kind != "number")
-        inverse = last.kind in ("transpose", "power") or (last.kind == "call" and last.value in OF_MATRICES)
-        if inverse and last.args[0] == first and first.kind == "name" and first.value[0].isupper():
-            return first, *(factor for factor in between if factor.kind == "name")
+        for matrix, inverse in ((first, last), (last, first)):
+            is_inverse = inverse.kind in ("transpose", "power") or inverse.value in OF_MATRICES
+            if is_inverse and inverse.args[0] == matrix and matrix.kind == "name" and matrix.value[0].isupper():
+                return matrix, *(factor for factor in between if factor.kind == "name")
     return ()
 
 

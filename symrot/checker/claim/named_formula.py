@@ -3,7 +3,7 @@
 No such claim is an identity: whether it holds depends on what its letters mean.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from functools import partial, reduce
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from symrot.errors import InputError
 from symrot.exact import normal_form
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["NamedFormula", "named_formula", "related_formula"]
+__all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
@@ -57,6 +57,47 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     return None
 
 
+def open_formula(claim: Claim) -> NamedFormula | None:
+    """Return the sides of a claim that says how a quantity depends on another one, which nothing else says; or None.
+
+    ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
+    """
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    if not claim.implied or claim.hypotheses:
+        return None
+    known = _known(claim)
+    for side in (left, right):
+        for _, node in walk(side):
+            if node.kind == "call" and node.value == "diff":
+                names, others = ({*_letters_of(part)} for part in (node.args[:1], node.args[1:]))
+                if names and not names & {*known, *others} and not _depends_on_time(node):
+                    return NamedFormula(text(left), left, right, solve=None)
+    return None
+
+
+def _is_open_rate(side: Node, other: Node) -> bool:
+    """Return whether the rate of a product is zero, or is given by a letter of its own: ``(I w^2/2)' = I w alpha``."""
+    derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
+    has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
+    others = {*_letters_of([other])}
+    return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
+
+
+def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
+    """Yield the names of the symbols and of the functions of time in several trees."""
+    for tree in trees:
+        yield from (str(node.value) for _, node in walk(tree) if node.kind == "name" or _is_name(node))
+
+
+def _depends_on_time(derivative: Node) -> bool:
+    """Return whether a time derivative has a function of time inside."""
+    inner, *variables = derivative.args
+    return any(v.value == "t" for v in variables) and any(
+        node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
+    )
+
+
 def related_formula(claim: Claim) -> NamedFormula | None:
     """Return a quantity and the formula for it, from a claim that may hold because of what its letters mean."""
     assert claim.relation is not None
@@ -67,6 +108,9 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
     if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
+        return NamedFormula(text(left), left, right, solve=None)
+    defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
+    if not claim.hypotheses and not defined and (_is_open_rate(left, right) or _is_open_rate(right, left)):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None

@@ -32,6 +32,9 @@ MOST_READINGS = 6
 MOST_DOUBTS = 40
 """The most readings of one text that are tried, and the most places with two readings that are looked at."""
 
+DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
+"""The signs of ``(R a)·(R b)``, with None for a name."""
+
 FIRST_AND_LAST = ("i", "f")
 """Indices of the first and last value of a quantity."""
 
@@ -228,7 +231,7 @@ class _Text:
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
                 continue
-            if word in vectors:
+            if word in vectors or word in self.differentials:
                 continue
             if (power := lost_power(word)) and self.is_spaced_after(word):
                 doubt = Doubt(("power of function", start), word)
@@ -250,6 +253,17 @@ class _Text:
                 words[word] = pieces
                 notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
         return words, notes, doubts
+
+    @property
+    def differentials(self) -> set[str]:
+        """The words dy and dx of ``dy/dx`` and of ``d/dx (..)``."""
+        words = set()
+        for n, slash in enumerate(self.tokens):
+            above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
+            is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")
+            if slash.text == "/" and is_above and re.fullmatch(r"d[A-Za-z]", below.text):
+                words |= {word for word in (above.text, below.text) if re.fullmatch(r"d[A-Za-z]", word)}
+        return words
 
     def is_spaced_after(self, word: str) -> bool:
         """Return whether a blank and another name follow each time that the text has a word."""
@@ -425,13 +439,19 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
     """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
 
-    In ``a·b = |a| |b| cos x`` the names between a dot have lengths.
+    In ``a·b = |a| |b| cos x`` the names between a dot have lengths, and ``(R a)·(R b)`` multiplies two turned vectors.
     """
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
             yield from (left.text, right.text)
+    for place in range(len(tokens) - len(DOT_OF_PRODUCTS)):
+        pieces = [tokens[place + n].text for n in range(len(DOT_OF_PRODUCTS))]
+        if all(sign in (None, piece) for sign, piece in zip(DOT_OF_PRODUCTS, pieces, strict=True)):
+            (matrix, first), (other, second) = pieces[1:3], pieces[6:8]
+            if matrix == other and matrix.isupper() and is_usual_vector(first) and is_usual_vector(second):
+                yield from (first, second)
     for place, name in enumerate(tokens[:-1]):
         before, after, last = tokens[max(place - 1, 0)], tokens[place + 1], tokens[min(place + 2, len(tokens) - 1)]
         bracketed = before.text == "["

@@ -93,7 +93,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"M", ("torque", "angular momentum of")), (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
-    (r"P(_?rot)?", ("power",)),
+    (r"P(_?rot)?", ("power",)), (r"e", ("angle", "energy")),
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
@@ -106,6 +106,9 @@ PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral
 
 SQUARED = ", squared"
 """The end of the names of those known formulas whose root has the name."""
+
+RATES_OF_TOPS = ("precession", "nutation", "frequency")
+"""Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
 
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments are not what a faulty formula is likely to mean."""
@@ -133,7 +136,11 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     nearest = _nearest(claim, named) if repair else None
     if nearest is not None:
         return nearest
-    if named.solve is None:
+    own, others = _letters(named.side), _letters(named.formula)
+    shared = sorted(own & others if own and others else own | others)
+    if named.solve is None and shared:
+        reason = f"it says something about {' and '.join(shared)}, and nothing here says what that is"
+    elif named.solve is None:
         reason = "its sides have no letter in common, and nothing here says what these quantities are"
     else:
         reason = (
@@ -373,6 +380,10 @@ def _without_function(value: Any) -> tuple[Any, str]:
 def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, by the name of the quantity and the units of its symbols."""
     words = words_of(named)
+    if words is None and "inertia" in known.name and named.name[:1].islower():
+        return False  # books call moments of inertia by capital letters
+    if _is_component_of_rate(named) and any(word in known.name for word in RATES_OF_TOPS):
+        return False
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
@@ -380,6 +391,14 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
+
+
+def _is_component_of_rate(named: NamedFormula) -> bool:
+    """Return whether an angular velocity with an index is one of several in a claim: omega_2 next to omega_1."""
+    stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
+    return stem is not None and any(
+        re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in _letters(named.formula)
+    )
 
 
 def _fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:

@@ -150,7 +150,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
-        """Read ``dx/dt``, ``d²x/dt²`` or ``d/dt x`` as a derivative; None for any other text."""
+        """Read ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)`` as a derivative; None for any other text."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
         if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
@@ -163,7 +163,7 @@ class OpenFunctionsPart(Cursor):
             return self.quotient_rate(token, texts[2], int(texts[1]), 7)
         if word == "d" and self.token().kind == "power" and texts[2:5] == ["/", "dt", texts[0]] and texts[0].isdigit():
             return self.quotient_rate(token, texts[1], int(texts[0]), 5)
-        return None
+        return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
         """Return whether an exponent or a bracket follows the token that is ``ahead`` tokens after the cursor."""
@@ -179,6 +179,52 @@ class OpenFunctionsPart(Cursor):
         self.index += length
         self.timed.add(name)
         return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
+
+    def derivative_by(self, token: Token) -> Node | None:
+        """Read ``dy/dx``, ``d/dx (..)`` or ``d²/dx² (..)`` as a derivative by x; None for any other text."""
+        if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
+            return None
+        place, name = 0, token.text[1:]
+        order, place = self.order_at(place)
+        if not name and self.token(place).text != "/":
+            name, place = self.tight_name(place)
+        slash, (variable, place) = self.token(place).text, self.differential(place + 1)
+        below, place = self.order_at(place)
+        if slash != "/" or not variable or variable == "t" or order != below or name == variable:
+            return None
+        after = self.token(place)
+        if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):
+            return None
+        self.plain = True
+        self.index += place
+        variables = [Node("name", variable)] * order
+        if name:
+            return Node("call", "diff", (Node("name", name), *variables), self.span(token.start))
+        self.deeper()
+        operand = self.factor()
+        self.depth -= 1
+        if self.peek() == "" and self.starts_factor():
+            raise self.fail(f"brackets around the formula after d/d{variable}")
+        return Node("call", "diff", (operand, *variables), self.span(token.start))
+
+    def order_at(self, place: int) -> tuple[int, int]:
+        """Return the order of a derivative that is written at a place, 1 without one, and the place after it."""
+        token, after = self.token(place), self.token(place + 1)
+        if token.text in ("^", "**") and after.text.isdigit():
+            return int(after.text), place + 2
+        return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
+
+    def tight_name(self, place: int) -> tuple[str, int]:
+        """Return the name at a place if no blank is in front of it, and the place after it; an empty name otherwise."""
+        token = self.token(place)
+        return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
+
+    def differential(self, place: int) -> tuple[str, int]:
+        """Return the variable of ``dx`` or ``dθ`` at a place, and the place after it; an empty name otherwise."""
+        token = self.token(place)
+        if token.kind != "name" or not token.text.startswith("d"):
+            return "", place
+        return (token.text[1:], place + 1) if token.text != "d" else self.tight_name(place + 1)
 
     def derivative_of_next(self, token: Token) -> Node:
         self.plain = True
