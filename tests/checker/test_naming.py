@@ -275,3 +275,22 @@ def test_relations_and_formulas_that_books_name_are_recognised(claim, name):
 ])  # fmt: skip
 def test_wrong_relations_and_formulas_are_not_recognised(claim):
     assert symrot.check(claim).verdict != "recognised"
+
+
+@pytest.mark.parametrize("claim", [
+    "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "a = ω r", "I_G = I_O + m d²", "k_G² = k_O² + d²",
+    "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",
+    "λ² = (I_2 - I_1)(I_3 - I_2) ω²/(I_1 I_3)", "M = (C - A) ω² sin β cos β", "I_G = I_O - m d²",
+])  # fmt: skip
+def test_letters_that_say_something_else_are_neither_recognised_nor_accused(claim):
+    assert symrot.check(claim).verdict == "definition"
+
+
+@pytest.mark.parametrize(("claim", "name"), [
+    ("R_11 = 1 - 2(q_2² + q_3²)", "entry 11"), ("R_23 = 2(q_2 q_3 + q_0 q_1)", "entry 32"),
+    ("φ̇ = (L_z - L_3 cos θ)/(I_1 sin²θ)", "rate of precession"), ("I_O = I_G + m d²", "parallel axis"),
+    ("Ω = I_3 ω_3/I_1", "nutation"),
+])  # fmt: skip
+def test_letters_that_say_the_same_are_recognised(claim, name):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and name in verdict.recognised_as[0].name

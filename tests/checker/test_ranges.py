@@ -46,7 +46,9 @@ def test_conditions_are_written_as_a_book_writes_them(text, signs):
     ("acos((trace(Rz(a)) - 1)/2) == a", "0 <= a <= pi"), ("sqrt((1 - cos(x))/2) == sin(x/2)", "sin(x/2) >= 0"),
     ("sqrt(a**2 + 2*a*b + b**2) == a + b", "a + b >= 0"), ("asin(2*x*sqrt(1 - x**2)) == 2*asin(x)", None),
     (r"\arccos(\cos\theta) = \theta", r"0 \leq \theta \leq \pi"), (r"\sqrt{x^2} = x", r"x \geq 0"),
-    ("sqrt(φ^2) = φ", "φ >= 0"),
+    ("sqrt(φ^2) = φ", "φ >= 0"), ("atan2(sin(b), sqrt(cos(b)**2)) == b", "-pi/2 <= b <= pi/2"),
+    ("atan2(abs(sin(b)), cos(b)) == b", "0 <= b <= pi"), ("√(x²) = x; √(y²) = y", "x >= 0 and y >= 0"),
+    ("sin(x/2) = ±√((1 - cos x)/2)", "sin(x/2) <= 0 for the lower sign"),
 ])  # fmt: skip
 def test_a_conditional_claim_states_its_range_in_its_own_notation(claim, condition):
     verdict = symrot.check(claim, repair=False)

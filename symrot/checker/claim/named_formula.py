@@ -19,6 +19,9 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
+MARKED = ("_prime", "_dot", "_star")
+"""Endings of names with a mark that says what they are of another quantity: ``theta'`` and ``z*``."""
+
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
 """Function of a quantity -> the function that solves for the quantity."""
 
@@ -50,7 +53,8 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     for side, formula in ((left, right), (right, left)):
         inner = side.args[0] if _is_rate(side) else side
         is_wrong_shape = inner.value in defined and formula.kind == "number" and formula.value
-        if _is_name(inner) and inner.value not in known and not _is_name(formula) and not is_wrong_shape:
+        is_bare = _is_name(formula) and not str(inner.value).endswith(MARKED)
+        if _is_name(inner) and inner.value not in known and not is_bare and not is_wrong_shape:
             elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
             if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
                 return NamedFormula(str(inner.value), side, formula, _is_rate(side))
@@ -66,7 +70,7 @@ def open_formula(claim: Claim) -> NamedFormula | None:
     _, left, right = claim.relation
     if not claim.implied or claim.hypotheses:
         return None
-    known = _known(claim)
+    known = {"pi", "t", *dict(claim.define)}
     for side in (left, right):
         for _, node in walk(side):
             if node.kind == "call" and node.value == "diff":

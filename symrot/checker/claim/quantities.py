@@ -60,8 +60,14 @@ def _is_imaginary(product: Node, letter: str) -> bool:
 
 
 def has_natural_base(trees: Sequence[Node]) -> bool:
-    """Return whether the letter e is the base of the exponential function, as its exponent is not a number."""
-    return any(_is_exponential(node, "e") for tree in trees for _, node in walk(tree))
+    """Return whether the letter e is the base of the exponential function.
+
+    It is if its exponent is not a number, and if it is the argument of a logarithm.
+    """
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")
+    of_e = any(e.value == "e" for argument in logarithms for e in (argument, *argument.args[:1]) if e.kind == "name")
+    return of_e or any(_is_exponential(node, "e") for node in nodes)
 
 
 def _is_exponential(node: Node, base: str) -> bool:

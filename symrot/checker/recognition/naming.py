@@ -22,7 +22,7 @@ from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, unit_of
-from symrot.checker.recognition.known_formulas import Known, ending_of
+from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
@@ -90,7 +90,8 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
     (r"V|U|E_?p|PE", ("potential", "work")),
-    (r"[HLh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
+    (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
+    (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"M", ("torque", "angular momentum of")), (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
     (r"P(_?rot)?", ("power",)), (r"e", ("angle", "energy")),
@@ -106,6 +107,12 @@ PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral
 
 SQUARED = ", squared"
 """The end of the names of those known formulas whose root has the name."""
+
+CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
+"""Names of moments and radii of gyration about the centre of mass, and about another point."""
+
+MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
+"""Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
@@ -183,7 +190,7 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if a single part keeps the formula from being a known one; otherwise None."""
     words = words_of(named)
-    nearby = near_formulas(claim, named, lambda known: _is_meant(known, words))
+    nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
     of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
@@ -225,8 +232,9 @@ def _misfit(name: str, known: str) -> float:
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
-def _is_meant(known: Known, words: Sequence[str] | None) -> bool:
-    return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known.name) for word in words)
+def _has_word(known: str, words: Sequence[str] | None) -> bool:
+    """Return whether one of several words is in the name of a known formula; an angular velocity is no velocity."""
+    return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
 def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
@@ -240,8 +248,10 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
-    if is_new and len(letters) < LEAST_SYMBOLS_EDITED:
-        return False
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term"):
+        return False  # with a missing letter that is zero, the formula is a special case
+    if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
+        return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         return words is not None
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
@@ -276,7 +286,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
             continue
         all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
-        is_open = edit.code in ("sign_of_term", "overall_sign") and not _has_terms(named.formula)
+        is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
+        is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not _has_terms(named.formula))
         if not readings or is_open or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
@@ -387,10 +398,29 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
-    if words is not None and not any(word in known.name for word in words):
+    if not _has_word(known.name, words) or not _keeps_places(named, known):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
+
+
+def _keeps_places(named: NamedFormula, known: Identification) -> bool:
+    """Return whether the places that letters say are those of a known formula.
+
+    An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
+    centre of mass stays that. A moment of inertia is no momentum, and p_phi is the momentum along z.
+    """
+    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
+    if entry and own and own[1] not in (entry[1], entry[1][::-1]):
+        return False
+    letters = [*known.mapping.values()] or [*_letters(named.formula)]
+    is_parallel = re.search("parallel.ax", known.name) is not None
+    if is_parallel and CENTRE.fullmatch(named.name) and any(map(POINT.fullmatch, letters)):
+        return False
+    momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
+    if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
+        return False
+    return not any(MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old) for old, new in known.mapping.items())
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:

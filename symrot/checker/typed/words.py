@@ -65,7 +65,7 @@ MOST_LETTERS = 3
 """The most letters of a product that the text does not use by themselves."""
 
 
-ENGLISH = ("if", "in", "is")
+WORDS_WITH_I = ("if", "in", "is")
 """Words of two letters that start with i."""
 
 
@@ -99,7 +99,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         return (), False
     if all(letter in alone for letter in letters):
         return letters, True
-    if len(word) == 2 and word[0] == "i" and word not in ENGLISH:
+    if len(word) == 2 and word[0] == "i" and word not in WORDS_WITH_I:
         return letters, True  # the imaginary unit, or an index, times a letter
     if len(word) == 2 and word[1] in "xyz":
         return ((), False) if word[0] in VECTORS else (letters, word[0] in SCALARS or word[1] in alone)

@@ -95,3 +95,18 @@ def test_frames_are_parts_of_names_if_there_are_several():
 def test_a_refusal_says_what_is_expected(claim, words):
     with pytest.raises(InputError, match=words):
         symrot.check(claim)
+
+
+@pytest.mark.parametrize(("claim", "condition"), [
+    ("tr(R I R^T) = tr(I)", "R is a rotation"), ("(R a)·(R b) = a·b", "R is a rotation"),
+    ("det(A B) = det(A)", "B is a rotation"),
+])  # fmt: skip
+def test_only_the_matrix_that_has_to_be_a_rotation_is_named(claim, condition):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.requires) == ("conditional", (condition,))
+
+
+def test_a_condition_on_a_matrix_says_that_nothing_defines_it():
+    verdict = symrot.check("A A^T = A^T A")
+    assert verdict.verdict == "definition"
+    assert verdict.reason == "it says something about A, and nothing here says what that is"
