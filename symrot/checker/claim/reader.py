@@ -261,6 +261,7 @@ class _Text:
         for n, slash in enumerate(self.tokens):
             above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
             is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")
+            is_above = above.text == ")" or is_above
             if slash.text == "/" and is_above and re.fullmatch(r"d[A-Za-z]", below.text):
                 words |= {word for word in (above.text, below.text) if re.fullmatch(r"d[A-Za-z]", word)}
         return words

@@ -146,7 +146,9 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     own, others = _letters(named.side), _letters(named.formula)
     shared = sorted(own & others if own and others else own | others)
     if named.solve is None and shared:
-        reason = f"it says something about {' and '.join(shared)}, and nothing here says what that is"
+        names = " and ".join(filter(None, [", ".join(shared[:-1]), shared[-1]]))
+        what = "that is" if len(shared) == 1 else "these are"
+        reason = f"it says something about {names}, and nothing here says what {what}"
     elif named.solve is None:
         reason = "its sides have no letter in common, and nothing here says what these quantities are"
     else:

@@ -181,9 +181,11 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
 
     def derivative_by(self, token: Token) -> Node | None:
-        """Read ``dy/dx``, ``d/dx (..)`` or ``d²/dx² (..)`` as a derivative by x; None for any other text."""
+        """Read ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` as a derivative by x; None for any other text."""
         if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
             return None
+        if token.text == "d" and self.peek() == "(" and (end := self.end_of_bracket()) is not None:
+            return self.derivative_of_bracket(token, end)
         place, name = 0, token.text[1:]
         order, place = self.order_at(place)
         if not name and self.token(place).text != "/":
@@ -206,6 +208,29 @@ class OpenFunctionsPart(Cursor):
         if self.peek() == "" and self.starts_factor():
             raise self.fail(f"brackets around the formula after d/d{variable}")
         return Node("call", "diff", (operand, *variables), self.span(token.start))
+
+    def end_of_bracket(self) -> int | None:
+        """Return the place after the bracket at the cursor if ``/dx`` follows it; None otherwise."""
+        depth, place = 0, 0
+        while self.token(place).kind != "end":
+            depth += (self.token(place).text == "(") - (self.token(place).text == ")")
+            place += 1
+            if depth == 0:
+                return place if self.token(place).text == "/" and self.differential(place + 1)[0] else None
+        return None
+
+    def derivative_of_bracket(self, token: Token, end: int) -> Node:
+        """Read ``d(x^2)/dx`` as a derivative; the bracket at the cursor has ``end`` tokens."""
+        variable, after = self.differential(end + 1)
+        length = after - end
+        self.plain = True
+        self.deeper()
+        operand = self.factor()
+        self.depth -= 1
+        self.index += length
+        if variable == "t":
+            self.varies(operand)
+        return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
         """Return the order of a derivative that is written at a place, 1 without one, and the place after it."""
@@ -232,10 +257,14 @@ class OpenFunctionsPart(Cursor):
         self.deeper()
         operand = self.factor()
         self.depth -= 1
-        for _, node in walk(operand):
-            varies = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
-            if varies or (node.kind == "call" and node.args == (TIME,)):
-                self.differentiated.add(str(node.value))
+        self.varies(operand)
         if self.peek() == "" and self.starts_factor():
             raise self.fail("brackets around the formula after d/dt")
         return Node("call", "diff", (operand, TIME), self.span(token.start))
+
+    def varies(self, operand: Node) -> None:
+        """Note that the names in a formula after d/dt may be functions of time."""
+        for _, node in walk(operand):
+            is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
+            if is_open or (node.kind == "call" and node.args == (TIME,)):
+                self.differentiated.add(str(node.value))
