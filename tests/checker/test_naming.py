@@ -289,7 +289,9 @@ def test_letters_that_say_something_else_are_neither_recognised_nor_accused(clai
 @pytest.mark.parametrize(("claim", "name"), [
     ("R_11 = 1 - 2(q_2² + q_3²)", "entry 11"), ("R_23 = 2(q_2 q_3 + q_0 q_1)", "entry 32"),
     ("φ̇ = (L_z - L_3 cos θ)/(I_1 sin²θ)", "rate of precession"), ("I_O = I_G + m d²", "parallel axis"),
-    ("Ω = I_3 ω_3/I_1", "nutation"),
+    ("Ω = I_3 ω_3/I_1", "nutation"), ("H_O = r × m v + H_G", "angular momentum about a point"),
+    ("v′ = v + 2 r × (r × v + w v)", "rotated vector"), ("v' = q v q*", "rotated vector"),
+    (r"M_3 = \begin{pmatrix} \cos\theta & \sin\theta & 0 \\ -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{pmatrix}", "z axis"),
 ])  # fmt: skip
 def test_letters_that_say_the_same_are_recognised(claim, name):
     verdict = symrot.check(claim)

@@ -203,7 +203,7 @@ def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
     """Return the atoms (symbols, functions, derivatives) on whose values the value of a formula depends."""
     for first, _ in DRAWS:
-        point = {atom: pow(first, n + 2, PRIME) for n, atom in enumerate(atoms)}
+        point = {atom: pow(first, n * n + 2, PRIME) for n, atom in enumerate(atoms)}  # no cross product is zero
         here = _defined(entries, point)
         if here is not None:
             break

@@ -376,7 +376,7 @@ def _factor(
 ) -> Rational | None:
     """Return the constant by which two formulas differ, from their values at a point; None if there is none."""
     for draw in range(MOST_DRAWS):
-        point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
+        point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:
             left = values_at(theirs, point)
             placed = {pairing[mine]: value for mine, value in point.items()}

@@ -5,6 +5,8 @@ or tangent: the name of such a formula ends with the inverse function, as in ``"
 """
 
 from collections.abc import Iterator
+from functools import reduce
+from operator import add
 from typing import Any
 
 from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, trace
@@ -12,6 +14,7 @@ from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, tr
 from symrot import symbols
 from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
+from symrot.kinematics.rotations import skew
 
 __all__ = ["rotations", "vectors"]
 
@@ -57,8 +60,34 @@ def vectors() -> Iterator[Named]:
     yield "torque on a gyroscope whose axis precesses", WHEEL, OMEGA.cross(symbols.C * spin)
     about_point = POSITION.cross(symbols.m * origin) + momentum
     yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
+    yield from _rates_of_the_matrix()
     yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
     yield "power of a torque", POWER, OMEGA.dot(Matrix(symbols.torque_b))
+
+
+def _rates_of_the_matrix() -> Iterator[Named]:
+    """Yield the rates of the rotation matrix and of its transpose, in their entries, from omega in both frames.
+
+    They are proven for the matrix of a quaternion, whose rates are known.
+    """
+    matrix = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
+    for frame, omega in (("body", Matrix(symbols.omega_b)), ("space", Matrix(symbols.omega_s))):
+        rates = quaternion.quaternion_rates(frame) * omega
+        change = reduce(add, (matrix.diff(q) * rate for q, rate in zip(Q, rates, strict=True)))
+        for title, own, rate in (("rotation matrix", matrix, change),
+                                 ("transposed rotation matrix", matrix.T, change.T)):  # fmt: skip
+            for sign, turned in ((sign, turned) for sign in (1, -1) for turned in (_turned_before, _turned_after)):
+                if (sign * turned(own, omega) - rate).applyfunc(expand).is_zero_matrix:
+                    name = f"rate of the {title} from omega in the {frame} frame"
+                    yield name, PARAMETERS, sign * turned(ENTRIES, omega)
+
+
+def _turned_before(matrix: Matrix, omega: Matrix) -> Matrix:
+    return skew(omega) * matrix
+
+
+def _turned_after(matrix: Matrix, omega: Matrix) -> Matrix:
+    return matrix * skew(omega)
 
 
 def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
@@ -67,6 +96,7 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
     yield "axis and angle (Rodrigues' formula)", powers
     yield "axis and angle (Rodrigues' formula) with a unit axis", _with_unit_axis(powers)
     yield "a unit quaternion", Matrix(quaternion.quaternion_to_dcm(Q))
+    yield "a unit quaternion, q v q*", Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
 
 
 def _with_unit_axis(powers: Matrix) -> Matrix:

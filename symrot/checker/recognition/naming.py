@@ -26,7 +26,7 @@ from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
-from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
@@ -113,6 +113,12 @@ CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAP
 
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
 """Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
+
+OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
+"""Words for quantities that are matrices."""
+
+MOST_COMPONENTS = 4
+"""The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
@@ -442,7 +448,9 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
     """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
-    return next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    is_matrix_of_rows = named.formula.value == "Matrix" and len(matrix_entries(named.formula)) > MOST_COMPONENTS
+    return None if words and is_matrix_of_rows and not {*words} & {*OF_MATRICES} else words
 
 
 def _plain(named: NamedFormula) -> str:

@@ -7,7 +7,7 @@ import symrot
 
 @pytest.mark.parametrize("claim", [
     "d/dx x^3 = 3x^2", "d/dx sin x = cos x", "d/dθ cos θ = -sin θ", "d²/dx² x^3 = 6x", "d/dx (a sin x) = a cos x",
-    "d/dx √x = 1/(2√x)", "dy/dx = 2x where y = x²", "d/dt (x²) = 2 x x'",
+    "d/dx √x = 1/(2√x)", "d(x^2)/dx = 2x", "d(sin θ)/dt = θ' cos θ", "dy/dx = 2x where y = x²", "d/dt (x²) = 2 x x'",
 ])  # fmt: skip
 def test_a_derivative_by_a_letter_is_decided(claim):
     assert symrot.check(claim).verdict == "true"
