@@ -41,6 +41,9 @@ AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
 
 DECIDED = ("true", "false", "conditional", "undecided")
+CAPITAL = re.compile(r"[A-Z](_?[0-9])?")
+"""Names that are often matrices."""
+
 UNUSED_CONTEXT = "the context is not used, since the formulas of the claim decide it"
 
 OUTCOMES = {
@@ -209,8 +212,26 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
     )
-    notes = (*claim.notes, *verdict.notes)
+    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
+    """Return a note on capital letters in a true claim that could be matrices: they commute only as numbers."""
+    if verdict.verdict != "true" or claim.relation is None:
+        return ()
+    known = {*dict(claim.define), *claim.symbols}
+    orders = [
+        [str(factor.value) for factor in node.args if factor.kind == "name" and CAPITAL.fullmatch(str(factor.value))]
+        for side in claim.relation[1:]
+        for _, node in walk(side)
+        if node.kind == "product"
+    ]
+    letters = [name for order in orders if len(order) > 1 for name in order if name not in known]
+    exchanged = any(first != second and sorted(first) == sorted(second) for first in orders for second in orders)
+    if not exchanged or not letters:
+        return ()
+    return (f"{' and '.join(sorted({*letters}))} are read as numbers, for which the order of factors is free",)
 
 
 def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, number, walk
 from symrot.checker.claim.vectors import is_tensor
 
 __all__ = [
@@ -114,13 +114,25 @@ def _of_matrix(node: Node) -> Sequence[Node]:
         first, second = (side.args[0] for side in node.args)
         is_one = first == second and first.kind == "name" and first.value[0].isupper()
         return (first,) if is_one else ()  # R a x R b, and R a . R b
-    if node.kind == "product" and len(node.args) > 2:
-        first, *between, last = (factor for factor in node.args if factor.kind != "number")
+    factors = [factor for factor in node.args if factor.kind != "number"] if node.kind == "product" else []
+    if len(factors) > 2:
+        if forms := _of_form(factors):
+            return forms
+        first, *between, last = factors
         for matrix, inverse in ((first, last), (last, first)):
             is_inverse = inverse.kind in ("transpose", "power") or inverse.value in OF_MATRICES
             if is_inverse and inverse.args[0] == matrix and matrix.kind == "name" and matrix.value[0].isupper():
                 return matrix, *(factor for factor in between if factor.kind == "name")
     return ()
+
+
+def _of_form(factors: Sequence[Node]) -> list[Node]:
+    """Return the names in capital letters between a transposed column and a column: A in ``a^T A b``."""
+    first, *between, last = factors
+    columns = [first.args[0] if first.kind == "transpose" else number(0), last]
+    if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
+        return []
+    return [name for name in between if name.kind == "name" and name.value[0].isupper() and not is_tensor(name.value)]
 
 
 def _factors(node: Node) -> Iterator[str]:
