@@ -162,7 +162,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise interpreter.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q > 1:  # of odd index too: the principal value of a negative number is not real
+    if exponent.q > 1:  # roots of odd index too: the principal value of a negative number is not real
         interpreter.within_nesting(base, node.args[0])
         interpreter.take_root(base, node.args[0])
     return base**exponent

@@ -19,7 +19,7 @@ SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
 
 
 class Notation(Protocol):
-    """A way to write formulas: the one that a user chose."""
+    """The notation of the user's text, in which answers are written."""
 
     def formula(self, node: Node) -> str:
         """Return the text of a formula."""
@@ -43,7 +43,7 @@ class TypedNotation:
     plain : bool
         Whether powers are ``^`` and equations ``=``; if not, formulas are SymPy's text.
     spelling : mapping
-        Name here -> name as it is typed.
+        Name in the tree -> name as it was typed.
     timed : frozenset of str
         Functions of time that are typed without ``(t)``.
     """
