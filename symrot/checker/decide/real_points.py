@@ -284,7 +284,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count the cost of factoring a polynomial of this degree against the budget; over the rationals it is free."""
+        """Count the cost of factoring a polynomial (none over the rationals); raise _DeadEnd beyond the budget."""
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
