@@ -52,7 +52,7 @@ class Body:
     place : str
         The title of a place of :data:`symrot.checker.context.quantities.PLACES`, such as "about an end"; or empty.
     rest : str
-        The words that say nothing about the body that symrot knows.
+        The words that symrot does not use.
     """
 
     kind: Kind
