@@ -15,7 +15,7 @@ class OpenFunctionsPart(Cursor):
     """The part of the parser that reads functions without brackets, and derivatives written as quotients."""
 
     def applied(self, function: str, token: Token) -> Node:
-        """Read a function without brackets: ``sin 2x``, ``sin^2 x``, ``tan^-1 x``."""
+        """Read what follows the name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or its power."""
         exponent = self.function_exponent(token)
         inverse = exponent == number(-1) and function in ("sin", "cos", "tan")
         if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
@@ -29,7 +29,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read the exponent between a function and its argument, as the 2 of ``sin^2 x``."""
+        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``; None without."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True
@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read the argument of a function without brackets; return the call, and an exponent of the whole call."""
+        """Read an argument without brackets; return the call, and an exponent of the whole call or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -130,7 +130,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Read the formula after a root sign √, to which no bar shows the end."""
+        """Read the formula after a root sign √, which has no bar to show its end; return the square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -166,7 +166,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent or a bracket follows the token that is ``ahead`` tokens after the cursor."""
+        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 

@@ -148,7 +148,7 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def lost_power(word: str) -> tuple[str, ...]:
-    """Return the pieces of ``sin2`` where its raised digit was lost, as in text copied from a PDF: sin, ^ and 2.
+    """Return sin, ^ and 2 for ``sin2``, which may be sin² copied from a PDF; an empty tuple for other words.
 
     Examples
     --------
@@ -160,7 +160,7 @@ def lost_power(word: str) -> tuple[str, ...]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens, with each of the words ``words`` replaced by the tokens of the names that it consists of."""
+    """Yield tokens in which the tokens of several names replace each word in ``words``."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):
