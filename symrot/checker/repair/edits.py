@@ -226,7 +226,7 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a transpose is no useful edit: it changes nothing, or the shape alone, or equals another edit."""
+    """Return whether to transpose a call is useless: nothing or only the shape changes, or another edit is equal."""
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
