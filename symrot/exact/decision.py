@@ -128,7 +128,7 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that ``search`` finds, in the given entries (default: the unproven ones).
+        """Return the first counterexample that ``searches`` find in the entries ``places`` (default: unproven entries).
 
         A point that provably violates a hypothesis is skipped.
         """
