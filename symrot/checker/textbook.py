@@ -88,7 +88,7 @@ def findings(
 
 
 def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str]) -> Finding:
-    """Return the result of checking one claim, with its data, and with a proposed correction, which may be empty."""
+    """Return the result of checking one claim with its ``data``; the proposed correction may be empty."""
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
     lost = data.get("lost", [])

@@ -147,7 +147,7 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation in which the length replaces a vector where only a scalar makes sense, and these vectors.
+    """Return a relation with lengths in place of vectors where only a scalar makes sense, and these vectors' names.
 
     Only a scalar makes sense in a product of two columns, ``a b sin(x)``, and in a sum with a scalar.
     """

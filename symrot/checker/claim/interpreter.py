@@ -29,7 +29,7 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
     "zoo", "infinity", "Infinity",
 )  # fmt: skip
-"""Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
+"""Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
 
 INSTEAD = {"I": "I_1", "E": "E_k"}
 """Such a name -> a name for the quantity that books on mechanics call by it."""

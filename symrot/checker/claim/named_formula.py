@@ -268,7 +268,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the quantity that a side consists of, such as k in m*k^2, and a function that solves for it; or None."""
+    """Return the quantity of which a side is a function, such as k in 2*k^2, and how to solve for it; or None."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":

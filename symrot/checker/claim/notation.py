@@ -15,7 +15,7 @@ __all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
 
 
 SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
-"""What stands between the formulas of a condition."""
+"""A sign or word between the formulas of a condition."""
 
 
 class Notation(Protocol):
@@ -137,7 +137,7 @@ def notation_of(reading: Reading) -> TypedNotation:
 
 
 END = Node("name", "")
-"""No factor, after the last one."""
+"""A stand-in for the factor after the last one."""
 
 
 def _is_number_power(node: Node) -> bool:

@@ -24,7 +24,7 @@ def decide_value(claim: Claim) -> Decision:
     Raises
     ------
     InputError
-        If the value holds symbols, or the printed text is no decimal number.
+        If the value contains symbols, or the printed text is not a decimal number.
     """
     assert claim.value is not None
     where = claim.label("value")

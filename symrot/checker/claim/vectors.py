@@ -176,13 +176,13 @@ def _lone_names(sides: Sequence[Node]) -> set[str]:
 
 
 def with_scalar_products(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which a.T*b, of two of the vectors ``names``, is the scalar product of a and b."""
+    """Return a tree in which the scalar product of a and b replaces a.T*b, for vectors a and b in ``names``."""
     made = replace(node, args=tuple(with_scalar_products(child, names) for child in node.args))
     return _with_scalar_products(made, [Node("name", name) for name in names]) if made.kind == "product" else made
 
 
 def _with_scalar_products(node: Node, vectors: Sequence[Node]) -> Node:
-    """Return a product in which a.T*b, of two vectors, is the scalar product of a and b."""
+    """Return a product in which the scalar product of two vectors a and b replaces a.T*b."""
     factors: list[Node] = []
     for factor in node.args:
         last = factors[-1] if factors else None

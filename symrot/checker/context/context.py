@@ -368,7 +368,7 @@ def read_frame(words: str, prefix: str = "") -> str:
 def read_sequence(words: str, prefix: str = "") -> str:
     """Return the sequence of angles that words name, one of :data:`symrot.conventions.SEQUENCES`.
 
-    Upper case and numbers mean rotations about moving axes; lower case, or the word "space", about fixed axes.
+    Upper case and numbers mean rotations about moving axes; lower case or the word "space" means fixed axes.
 
     Raises
     ------

@@ -34,7 +34,7 @@ MOST_TERMS, LARGEST_DEGREE = 400, 24
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the conditions that textbooks state and each of which makes all residuals (left - right) vanish.
+    """Return conditions, of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
 
     Parameters
     ----------

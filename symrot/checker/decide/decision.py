@@ -457,7 +457,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the formula with the shorter text; a large one is not printed to find out."""
+    """Return the formula with the shorter text, or one that has far fewer parts than the other."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few

@@ -41,7 +41,7 @@ CANDIDATES = 8
 """The number of points where the sides differ; the one with the shortest numbers becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
-"""Values for symbols on which no hypothesis bears."""
+"""Values for symbols that occur in no hypothesis."""
 
 
 class Hypotheses:

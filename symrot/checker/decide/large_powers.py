@@ -39,7 +39,7 @@ LONGEST_WHOLE_NUMBER = 40
 """The most digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Digits with which other numbers are written: as few as show that the sides differ."""
+"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------

@@ -287,7 +287,7 @@ class _Conditions:
             self.nonzero[_bound(factor).formula] = None
 
     def _settle(self) -> None:
-        """Turn products into bounds as long as the sign of all factors but one is known."""
+        """Turn each product of which all factors but one have known signs into a bound, and repeat."""
         changed = True
         while changed:
             changed = False

@@ -271,7 +271,7 @@ class _Interpreter(CalculusPart):
         return True
 
     def head(self) -> Node | None:
-        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix, as the name R.
+        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix; return the name R.
 
         Brackets around the head, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such head: then
         ``R(\phi)`` is a product.

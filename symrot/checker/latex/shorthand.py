@@ -1,4 +1,4 @@
-r"""Short forms of cosines and sines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
+r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
 
 They are read as functions only if the text has both a cosine and a sine in this form, and no c or s by itself.
 """

@@ -20,7 +20,7 @@ __all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "values_at"]
 PRIME = 2**61 - 1
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
-"""(value of the raised symbol, value of the others), tried in turn until the formula is defined."""
+"""(value of one symbol, value of all others), tried in turn until the formula is defined."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
 LARGEST_MULTIPLE = 400

@@ -341,7 +341,7 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return orders of the symbols ``others`` to pair them with ``atoms``, the most plausible ones first.
+    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first.
 
     An order is plausible if few units contradict each other and many names are equal.
     """

@@ -136,7 +136,7 @@ def _entries() -> Iterator[Named]:
 
 
 def _angles() -> Iterator[Named]:
-    """Yield formulas for the axis of a rotation, and for its angle from a matrix, quaternion or Euler angles."""
+    """Yield formulas for the axis and angle of a rotation, from a matrix, quaternion, Euler angles or two rotations."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     total = expand(trace(powers)).subs(symbols.n3**2, 1 - symbols.n1**2 - symbols.n2**2)
     (cosine,) = solve(expand(total) - trace(ENTRIES), cos(ANGLE))

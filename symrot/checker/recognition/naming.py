@@ -98,7 +98,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
-"""Pattern of a name, ``d`` in front of it for its rate -> the words of which one is in the name of its formulas.
+"""Pattern of a name, with ``d`` in front for a rate -> words, one of which is in the name of each formula for it.
 
 Names without a pattern may name any formula.
 """
@@ -124,7 +124,7 @@ RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
 
 RARE = ("annulus", "thin tube", "conical shell")
-"""Bodies whose moments are not what a faulty formula is likely to mean."""
+"""Bodies whose moments a faulty formula is unlikely to mean."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""

@@ -32,7 +32,7 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 MOST_STEPS = 400
 """The most partial renamings of one known formula that are tried."""
 MOST = 6
-"""The most renamings of one known formula."""
+"""The most renamings of one known formula that are returned."""
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:

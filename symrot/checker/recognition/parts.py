@@ -48,7 +48,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
-"""Factor of an angle -> the fault of a formula that has the angle without it."""
+"""Factor that an angle should have -> the fault of a formula without this factor."""
 
 Values = tuple[Any, ...]
 """One value for each point: numbers, or rows of matrices."""

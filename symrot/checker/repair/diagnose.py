@@ -44,7 +44,7 @@ MOST_EXPANDED = 1_000_000
 """The most products of terms to expand the claim and all candidates; a claim that needs a fourth gets no repair."""
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
-"""The faults that are named even if the only repair makes both sides the same formula: it is not offered."""
+"""The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
 
 AS_NEAR = 0.35
 """The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair."""

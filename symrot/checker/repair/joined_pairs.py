@@ -92,7 +92,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of edits with the whole effect; ``rest`` returns the effect that one edit leaves to the other."""
+    """Yield pairs of edits that together have the whole effect; ``rest`` returns what one edit leaves to the other."""
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)
     if not scale:

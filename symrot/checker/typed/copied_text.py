@@ -74,7 +74,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return clauses after ``where``, with blanks in place of clauses without an equation, and the latter as a list."""
+    """Return clauses after ``where``, with blanks in place of clauses without an equation, and a list of those."""
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

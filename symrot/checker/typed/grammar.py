@@ -127,7 +127,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Read the formula after a slash: without brackets, one factor or the whole product that follows.
+        """Read and return the formula after a slash: without brackets, one factor or the whole product that follows.
 
         Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
         the product.

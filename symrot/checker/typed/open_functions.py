@@ -29,7 +29,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``; None without."""
+        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``, or None."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True

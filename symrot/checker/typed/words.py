@@ -37,7 +37,7 @@ ALIASES = {
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
-"""Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
+"""Other names of built-in functions -> the name in trees. Names that SymPy's own text uses are among them."""
 
 _JOINED = re.compile(
     rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
