@@ -311,9 +311,9 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several equations that are conditional, with the conditions of all of them.
+    """Return the verdict on several conditional equations, with the conditions of all equations.
 
-    With ``both_signs``, the equations are the two that one with ± means, each with its own condition.
+    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)

@@ -33,12 +33,12 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
 
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
-    """Return the names that are defined as matrices of any 3 x 3 entries."""
+    """Return the names that are defined as matrices of 3 x 3 independent entries."""
     return [name for name, tree in definitions if tree == matrix_of_entries(name)]
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions in which the matrices ``names`` are rotations about any axis."""
+    """Return definitions in which the matrices ``names`` are general rotations."""
     return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
 
 

@@ -20,7 +20,7 @@ __all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
-"""Endings of names with a mark that says what they are of another quantity: ``theta'`` and ``z*``."""
+"""Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
 """Function of a quantity -> the function that solves for the quantity."""
@@ -63,7 +63,7 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return the sides of a claim that says how a quantity depends on another one, which nothing else says; or None.
+    """Return the two sides of a claim about the derivative of a name that nothing defines; None for other claims.
 
     ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
     """
@@ -82,7 +82,10 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether the rate of a product is zero, or is given by a letter of its own: ``(I w^2/2)' = I w alpha``."""
+    """Return whether a side has the time derivative of a formula, and the other side is 0 or has further letters.
+
+    An example is ``(I w^2/2)' = I w alpha``, with the further letter alpha.
+    """
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
@@ -96,7 +99,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a time derivative has a function of time inside."""
+    """Return whether a derivative is one by time, of a formula that contains a function of time."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)

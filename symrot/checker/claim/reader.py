@@ -33,7 +33,7 @@ MOST_DOUBTS = 40
 """The most readings of one text that are tried, and the most places with two readings that are looked at."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
-"""The signs of ``(R a)·(R b)``, with None for a name."""
+"""The tokens of ``(R a)·(R b)``, with None in place of each name."""
 
 FIRST_AND_LAST = ("i", "f")
 """Indices of the first and last value of a quantity."""
@@ -440,7 +440,8 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
     """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
 
-    In ``a·b = |a| |b| cos x`` the names between a dot have lengths, and ``(R a)·(R b)`` multiplies two turned vectors.
+    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b are
+    vectors that a matrix R rotates.
     """
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}

@@ -121,7 +121,7 @@ MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
-"""Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
+"""Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
 
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments a faulty formula is unlikely to mean."""
@@ -413,10 +413,10 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
 
 
 def _keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether the places that letters say are those of a known formula.
+    """Return whether the entries, axes and kinds that names state agree with a known formula.
 
     An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
-    centre of mass stays that. A moment of inertia is no momentum, and p_phi is the momentum along z.
+    centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
@@ -432,7 +432,7 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether an angular velocity with an index is one of several in a claim: omega_2 next to omega_1."""
+    """Return whether the quantity is an angular velocity with an index next to others: omega_2 next to omega_1."""
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
         re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in _letters(named.formula)
