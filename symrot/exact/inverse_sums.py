@@ -140,7 +140,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
     """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
 
-    It is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
+    The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
@@ -160,9 +160,9 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
     """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
 
-    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), it is w for w in [0, pi] and positive r.
-    For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), it is w for w in [-pi/2, pi/2] and
-    positive r.
+    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
+    positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in
+    [-pi/2, pi/2] and positive r.
     """
     y, x = leaf.args
     for root, other_part, own, other_function, ends in (

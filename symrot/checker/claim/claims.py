@@ -486,7 +486,7 @@ def _on_matrix(name: str) -> str:
     """Return the note on a name that is read as a matrix."""
     return (
         f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
-        f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+        f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
     )
 
 

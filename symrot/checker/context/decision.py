@@ -356,7 +356,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault that turns a derived formula into a claim's formula, and repairs that change only the latter."""
+    """Return the fault by which a claim's formula differs from a derived one, and repairs of the claim's formula."""
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))

@@ -53,7 +53,7 @@ def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts: its requirements, then what else its formulas need.
+    """Return the conditions of a decision as texts: its requirements, then the other conditions of its formulas.
 
     A condition that follows from the only requirement is left out.
     """
@@ -339,7 +339,7 @@ class _Conditions:
         return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
 
     def _new_range(self, quantity: Expr) -> _Range:
-        """Return the range that a quantity has anyway: -1 to 1 for a sine or cosine, nonnegative for a square."""
+        """Return the range that follows from the form of a quantity: -1 to 1 for a sine, nonnegative for a square."""
         if isinstance(quantity, sin | cos):
             return _Range(Integer(-1), Integer(1))
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()

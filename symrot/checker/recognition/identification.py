@@ -298,7 +298,7 @@ def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _is_usual(mine: Expr, own: Expr) -> bool:
-    """Return whether books use the letter ``own`` for quantities with the unit of ``mine``, of a known formula."""
+    """Return whether books use the letter ``own`` for quantities with the unit of the known symbol ``mine``."""
     name = plain_name(as_text(own))
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
     return pattern is None or re.fullmatch(pattern, name) is not None

@@ -160,7 +160,7 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Read ``×`` and the factor after it; add it to ``factors``, or make a cross product if a side is a vector."""
+        """Read ``×`` and the factor after it, and put their product into ``factors``; for vectors, a cross product."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()

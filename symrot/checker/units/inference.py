@@ -155,7 +155,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, entry by entry, and return it; ``words``: the complaint."""
+        """Require that two values have the same dimension, entry by entry, and return it; ``words`` state a fault."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
@@ -188,7 +188,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number, and return its dimension; ``words``: the complaint."""
+        """Require that a scalar is a pure number, and return its dimension; ``words`` state a fault."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
