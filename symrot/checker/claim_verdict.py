@@ -6,15 +6,15 @@ from dataclasses import replace
 from time import perf_counter
 
 from symrot.checker.claim.claims import Claim, relation_text
-from symrot.checker.claim.named_formula import NamedFormula, named_formula, related_formula
+from symrot.checker.claim.named_formula import NamedFormula, named_formula, open_formula, related_formula
 from symrot.checker.claim.values import decide_value
-from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
+from symrot.checker.decide.ranges import condition_texts
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
-from symrot.exact.printing import as_text
 
 __all__ = ["MOST_SECONDS", "check_claim", "check_readings", "unfinished", "verdict_of_decision"]
 
@@ -46,11 +46,12 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            decision, verdict = _on_name(claim, repair, named_formula) or _decide(claim)
+            named = _on_name(claim, repair, named_formula) or _on_name(claim, repair, open_formula)
+            decision, verdict = named or _decide(claim)
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
-                named = _on_name(claim, repair, related_formula) or _on_relation(claim)
+                named = _on_name(claim, repair, related_formula) or _on_relation(claim) or _on_expanded(claim, repair)
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
@@ -90,7 +91,7 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
 def _on_name(
     claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
 ) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that gives a formula for a quantity without a definition; None for other claims.
+    """Return (None, verdict) for a claim that gives a formula for an undefined quantity; None for other claims.
 
     The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
     """
@@ -102,11 +103,15 @@ def _on_name(
     start = perf_counter()
     with _place_of(claim):
         verdict = verdict_on_name(claim, named, repair)
+        if claim.context:
+            from symrot.checker.context.decision import in_context
+
+            verdict = in_context(claim, named, verdict)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that is a known relation, such as an impulse equation; None for other claims."""
+    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None."""
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming import verdict_on_relation
@@ -116,10 +121,22 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
     return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
 
 
+def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
+    """Return (None, verdict) for a claim that names a quantity once its hypotheses are substituted; otherwise None."""
+    expanded = claim.expanded
+    if expanded is claim or expanded.hypotheses:
+        return None
+    named = _on_name(expanded, repair, related_formula) or _on_relation(expanded)
+    return None if named is None else (None, replace(named[1], text=claim.text))
+
+
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
     with _place_of(claim):
-        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
+        if claim.relation is None:
+            decision = decide_value(claim)
+        else:
+            decision = for_positive_bases(decide_equation(claim.equation), claim.equation)
     return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
 
 
@@ -145,8 +162,11 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     """Return the verdict with a diagnosis: the probable fault, or the side that is not defined everywhere."""
-    if claim.relation is None:
+    if claim.relation is None or is_large(claim.equation):
         return verdict
+    if any(requirement.code == "positive_base" for requirement in decision.requires):
+        text = f"a power with letters in its exponent is read for a positive base: {verdict.requires[0]}"
+        return replace(verdict, diagnosis=Diagnosis("positive_base", text))
     if decision.verdict not in ("false", "conditional"):
         return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
@@ -167,7 +187,7 @@ def _domain(claim: Claim) -> Diagnosis:
     if bool(left) == bool(right):
         return Diagnosis("none", "")
     narrow, wide = ("left", "right") if left else ("right", "left")
-    where = ", ".join(map(as_text, left or right))
+    where = ", ".join(condition_texts(left or right))
     text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
     return Diagnosis("domain", text)
 
@@ -175,7 +195,7 @@ def _domain(claim: Claim) -> Diagnosis:
 def verdict_of_decision(decision: Decision, text: str, start: float) -> Verdict:
     return Verdict(
         verdict=decision.verdict,
-        conditions=tuple(map(as_text, decision.conditions)),
+        conditions=condition_texts(decision.conditions),
         requires=tuple(requirement.text for requirement in decision.requires),
         counterexample=decision.counterexample,
         reason=decision.reason,

@@ -14,10 +14,12 @@ from symrot.checker.claim.claims import (
 )
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
+from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
-from symrot.checker.text import verdict_on_reading, verdict_on_text
+from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import dimensions_of_formulas
+from symrot.checker.units.conversion import measured_text
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
@@ -54,6 +56,10 @@ def check(
     assume: Sequence[Any] = (),
     units: Mapping[str, str] | None = None,
     repair: bool = True,
+    where: Sequence[str] = (),
+    body: str = "",
+    frame: str = "",
+    sequence: str = "",
 ) -> Verdict:
     """Return the verdict on an equation.
 
@@ -63,7 +69,7 @@ def check(
         The whole claim as text, ``"left == right"`` in the language of claims or LaTeX (text with a backslash): names
         are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
-        The right side, with a left side of SymPy.
+        The right side, if ``left`` is a SymPy value.
     assume : sequence
         Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
         for SymPy.
@@ -72,6 +78,15 @@ def check(
         ``t``, ``phi``), those of the symbols of symrot, or inferred ones. Only ``.dimension`` depends on units.
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
+    where : sequence of str
+        What names of a text mean, in words: ``"I = moment of inertia about the centre"``. With such a context, a claim
+        that only names a quantity is decided.
+    body : str
+        The body in words, ``"solid cylinder of radius r"``.
+    frame : str
+        ``"body"`` or ``"space"``: the frame of angular velocities and of rates.
+    sequence : str
+        The sequence of Euler angles, ``"ZXZ"``, ``"3-1-3"`` or ``"zyx"``.
 
     Returns
     -------
@@ -93,22 +108,30 @@ def check(
     --------
     >>> check("cos(2*x) == 1 - 2*sin(x)**2").verdict
     'true'
+    >>> check("I_zz == m*R**2/2", body="solid cylinder").verdict
+    'true'
     """
+    stated = read_context(where, body, frame, sequence)
+    if stated and not isinstance(left, str):
+        raise InputError("where, body, frame, sequence: expected a claim as text with a context, got a SymPy value")
     try:
-        return _checked(left, right, assume, units, repair)
+        return _checked(left, right, assume, units, repair, stated)
     except RecursionError:
         raise InputError("expected formulas that are nested less deeply") from None
 
 
-def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, str] | None, repair: bool) -> Verdict:
+def _checked(
+    left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, str] | None, repair: bool, stated: Context
+) -> Verdict:
     if isinstance(left, str):
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
-        if is_latex(left):
-            return _on_latex(left, assume, units, repair)
-        return verdict_on_text(left, assume, units, repair)
+        left = _without_backticks(left)
+        if is_latex(left) and measured_text(left) is None:
+            return _on_latex(left, assume, units, repair, stated)
+        return verdict_on_text(left, assume, units, repair, stated)
     if right is None and getattr(left, "rel_op", "") == "==":
         left, right = left.args
     if right is None:
@@ -127,15 +150,24 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
-def _on_latex(source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool) -> Verdict:
+def _without_backticks(source: str) -> str:
+    """Return a text without the backticks around it, with which posts mark formulas."""
+    bare = source.strip()
+    return bare.strip("`") if len(bare) > 1 and bare[0] == bare[-1] == "`" else source
+
+
+def _on_latex(
+    source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool, stated: Context
+) -> Verdict:
     """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
-    from symrot.checker.latex.reader import Names, latex_reading
+    from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.writing import LatexNotation
 
     functions = functions_of_time(assume)
-    reading = latex_reading(source, Names(functions=functions))
-    notation = LatexNotation(functions, reading.vectors)
-    return verdict_on_reading(reading, notation, source, assume, units, repair)
+    readings = latex_readings(source, Names(functions=functions))
+    return verdict_on_readings(
+        readings, lambda reading: LatexNotation(functions, reading.vectors), source, assume, units, repair, stated
+    )
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
@@ -188,7 +220,7 @@ def verdicts_of_file(
             continue
         progress(f"checking {entry.id} ..")
         try:
-            yield check_claim(entry, repair)
+            yield replace(check_claim(entry, repair), context=entry.context.echo)
         except InputError as reason:
             sentence = str(reason) if str(path) in str(reason) else f"{path}: {reason}"
             yield Verdict("refused", reason=sentence, id=entry.id, where=entry.where, text=entry.text)

@@ -8,7 +8,7 @@ from symrot.checker.claim.values import decide_value
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.exact.intervals import enclosure
 
-__all__ = ["with_rounding"]
+__all__ = ["rounded_value", "with_rounding"]
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
@@ -25,6 +25,20 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
         if digits and not _decimal(value, source) and _is_constant(value):
             return _rounded(claim, verdict, value, digits, number.span)
     return verdict
+
+
+def rounded_value(claim: Claim) -> str:
+    """Return the value of a worked number, rounded to the digits that are printed for it, or an empty text.
+
+    The text is empty if the value is not known well enough, or if the printed number has a power of ten.
+    """
+    assert claim.value is not None
+    interval = enclosure(claim.interpreter().read(claim.value))
+    if interval is None or "e" in claim.printed.lower():
+        return ""
+    places = len(claim.printed.strip().partition(".")[2])
+    right = f"{float(interval.mid):.{places}f}"
+    return right if decide_value(replace(claim, printed=right)).verdict == "true" else ""
 
 
 def _decimal(node: Node, source: str) -> str:
@@ -44,12 +58,8 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, place: tu
     if decision.verdict == "true":
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
-    interval = enclosure(claim.interpreter().read(value))
-    places = len(digits.partition(".")[2])
-    if interval is None or "e" in digits.lower():
-        return verdict
-    right = f"{float(interval.mid):.{places}f}"
-    if decide_value(replace(worked, printed=right)).verdict != "true":
+    right = rounded_value(worked)
+    if not right:
         return verdict
     source = claim.sources["claim"]
     repair = Repair(source[: place[0]] + right + source[place[1] :], "digits", 1.0)

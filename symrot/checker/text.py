@@ -1,33 +1,50 @@
 """The verdict on a text as people type it, on its usual interpretation (reading).
 
-A sentence reports each reading with another verdict. A chain ``a = b = c`` is decided link by link, and several lines
-one by one; a line that gives a name to a formula defines the name for the lines after it.
+A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided link by link, and several
+lines are decided one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.claims import Claim
+from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
+from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.named_formula import named_formula
-from symrot.checker.claim.notation import Notation, notation_of
-from symrot.checker.claim.reader import Reading, readings_of
+from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
+from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.marks import changed_entry, changed_spans
+from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
-from symrot.checker.verdict import Verdict
+from symrot.checker.units.conversion import Measured, measured_text
+from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.errors import InputError
 
-__all__ = ["verdict_on_reading", "verdict_on_text"]
+__all__ = ["verdict_on_readings", "verdict_on_text"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """The order in which the verdicts on the parts of a text decide the verdict on the whole."""
 
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
+INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
+
 NAMING = ("definition", "recognised")
+
+AS_TYPED = ("degrees",)
+"""The codes of repairs that are written in the notation of the input already."""
+
+DECIDED = ("true", "false", "conditional", "undecided")
+CAPITAL = re.compile(r"[A-Z](_?[0-9])?")
+"""Names that are often matrices."""
+
+UNUSED_CONTEXT = "the context is not used, since the formulas of the claim decide it"
 
 OUTCOMES = {
     "true": "true", "false": "false", "conditional": "true under a condition only", "undecided": "undecided",
@@ -38,16 +55,40 @@ OUTCOMES = {
 
 
 def verdict_on_text(
-    source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True
-) -> Verdict:
-    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+    source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None, repair: bool = True,
+    stated: Context = NO_CONTEXT,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on a text as people type it, with a note on every other reading whose verdict differs.
 
     Raises
     ------
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
-    readings = readings_of(source)
+    if (measured := measured_text(source)) is not None:
+        verdict = _on_measured(measured, source, assume, units, repair)
+        if not stated:
+            return verdict
+        stated.check_names(names_of(readings_of(measured.text)[0]))
+        return replace(verdict, context=stated.echo, notes=(*verdict.notes, UNUSED_CONTEXT))
+    readings = readings_of(source, declared=Declared(functions=functions_of_time(assume)))
+    fitting = [reading for reading in readings if stated.fits(names_of(reading))] or readings[:1]
+    return verdict_on_readings(fitting, notation_of, source, assume, units, repair, stated)
+
+
+def verdict_on_readings(
+    readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
+    units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+
+    ``notation`` returns the notation in which the formulas of a reading are written.
+
+    Raises
+    ------
+    InputError
+        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+    """
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
     late = False
@@ -56,33 +97,64 @@ def verdict_on_text(
         if late:
             break
         try:
-            verdict = verdict_on_reading(reading, notation_of(reading), source, assume, units, repair and not verdicts)
+            verdict = verdict_on_reading(
+                reading, notation(reading), source, assume, units, repair and not verdicts, stated
+            )
         except InputError as reason:
             refusal = refusal or reason
             continue
         verdicts.append((reading, verdict))
-    if refusal is not None and not verdicts:
-        raise refusal
-    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "recognised"), 0)
+        if stated and verdict.verdict in ("true", "false") and verdict.recognised_as:
+            break  # the stated meaning leaves no other reading
+    of_usual = readings[0] in [reading for reading, _ in verdicts]
+    if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
+        raise refusal  # an unusual reading alone must not make a claim false
+    known = ("recognised", "true") if stated else ("recognised",)
+    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if verdicts[0][1].verdict == "definition":
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
-    if refusal is not None and readings[0] not in [reading for reading, _ in verdicts]:
+    if refusal is not None and not of_usual:
         notes.append(f"the usual reading has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:
-            notes.append(_on_reading(usual, reading, other))
+            notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
 
 
-def _on_reading(usual: Reading, reading: Reading, verdict: Verdict) -> str:
+def _on_measured(
+    measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
+) -> Verdict:
+    """Return the verdict on a text whose numbers have units."""
+    reading = readings_of(measured.text)[0]
+    lines = claims_of_reading(reading, measured.text, assume, units)
+    notation = notation_of(reading)
+    parts = [
+        with_units(claim, measured, lambda other: with_rounding(other, check_claim(other, repair)))
+        for line in lines
+        for claim in line
+    ]
+    verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation)
+    diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
+    notes = tuple(map(measured.restored, verdict.notes))
+    return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes)
+
+
+def names_of(reading: Reading) -> set[str]:
+    """Return the names in a reading, with ``d`` in front for a rate."""
+    return {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
+
+
+def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
     """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
     places = reading.flipped or usual.flipped
-    changed = _text_of(reading, replace(notation_of(reading), plain=usual.plain or reading.plain))
+    if isinstance(notation, TypedNotation):
+        notation = replace(notation, plain=usual.plain or reading.plain)
+    changed = _text_of(reading, notation)
     excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
 
@@ -97,18 +169,30 @@ def _text_of(reading: Reading, notation: Notation) -> str:
 
 def verdict_on_reading(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
-    units: Mapping[str, str] | None = None, repair: bool = True,
+    units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
     """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines.
 
-    ``notation`` is the notation of the text, in which formulas are written.
+    ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
     """
-    lines = claims_of_reading(reading, source, assume, units)
+    lines = claims_of_reading(reading, source, assume, units, stated)
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
+    if several and verdict.verdict == "conditional":
+        conditions = [part.requires for _, part in parts if part.requires]
+        both_signs = len(conditions) == 2 and all(chain.both_signs for chain in reading.lines)
+        verdict = _with_all_conditions(verdict, conditions, both_signs)
     echo = _text_of(reading, notation)
-    return replace(verdict, text=source.strip(), reading=echo if _differs(echo, source) else "")
+    echo = echo if _differs(echo, source) else ""
+    notes = verdict.notes
+    if (
+        stated
+        and verdict.verdict in DECIDED
+        and not any(part.recognised_as for part in [verdict, *(p for _, p in parts)])
+    ):
+        notes = (*notes, UNUSED_CONTEXT)
+    return replace(verdict, text=source.strip(), reading=echo, context=stated.echo, notes=notes)
 
 
 def _differs(echo: str, source: str) -> bool:
@@ -117,9 +201,75 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
-    verdict = with_rounding(claim, check_claim(claim, repair))
-    repairs = tuple(replace(repair, text=notation.rewritten(repair.text)) for repair in verdict.repairs)
-    return replace(verdict, repairs=repairs, notes=(*claim.notes, *verdict.notes))
+    verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
+    verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
+        verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
+    repairs = tuple(
+        repair if repair.code in AS_TYPED else _marked(repair, claim, notation) for repair in verdict.repairs
+    )
+    requires, conditions = (
+        tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
+    )
+    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict))
+    return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
+    """Return a note on capital letters in a true claim that could be matrices: they commute only as numbers."""
+    if verdict.verdict != "true" or claim.relation is None:
+        return ()
+    known = {*dict(claim.define), *claim.symbols}
+    orders = [
+        [str(factor.value) for factor in node.args if factor.kind == "name" and CAPITAL.fullmatch(str(factor.value))]
+        for side in claim.relation[1:]
+        for _, node in walk(side)
+        if node.kind == "product"
+    ]
+    letters = [name for order in orders if len(order) > 1 for name in order if name not in known]
+    exchanged = any(first != second and sorted(first) == sorted(second) for first in orders for second in orders)
+    if not exchanged or not letters:
+        return ()
+    return (f"{' and '.join(sorted({*letters}))} are read as numbers, for which the order of factors is free",)
+
+
+def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
+    """Return a repair in the notation of the claim, with the pieces that differ from the claim."""
+    text = notation.rewritten(repair.text)
+    if claim.relation is None:
+        return replace(repair, text=text)
+    changed = changed_spans(notation.rewritten(relation_text(claim.relation)), text)
+    return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
+
+
+def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations.
+
+    Each matrix that suffices by being a rotation is an alternative; if no single one does, all of them have to be.
+    """
+    names = matrices_of_entries(claim.define)
+    groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
+    conditions: list[str] = []
+    for group in groups:
+        if len(group) > 1 and conditions:
+            break
+        other = check_claim(replace(claim, define=tuple(as_rotations(claim.define, group))), repair=False)
+        if other.verdict == "true":
+            conditions.append(" and ".join(f"{name} is a rotation" for name in group))
+            verdict = replace(
+                other, verdict="conditional", conditions=tuple(conditions), requires=tuple(conditions),
+                counterexample=verdict.counterexample,
+            )  # fmt: skip
+    return verdict
+
+
+def _has_indices(claim: Claim) -> bool:
+    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: other names share a pair's index."""
+    assert claim.relation is not None
+    names = {name for side in claim.relation[1:] for name in _names(side)}
+    pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
+    return any(f"_{index}" in name[-2:] for pair in pairs for index in pair for name in names)
 
 
 def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:
@@ -160,11 +310,25 @@ def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], not
     return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)
 
 
+def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
+    """Return the verdict on several conditional equations, with the conditions of all equations.
+
+    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own condition.
+    """
+    texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
+    others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
+    if both_signs:
+        required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
+    else:
+        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
+    return replace(verdict, requires=required, conditions=(*required, *others), diagnosis=Diagnosis("none", ""))
+
+
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on the links of a chain ``name = a = b``.
 
     The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
-    L^2/(2*I) of one body are equal by what L is. Such a link is decided as ``name = b``.
+    L^2/(2*I) of one body are equal because of what L means. Such a link is decided as ``name = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

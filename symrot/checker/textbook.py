@@ -1,16 +1,26 @@
-"""Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost."""
+"""Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+Two rules tell an error of a document from a character that the extraction lost. Another reading of the text may change
+what is printed, never the result that it is measured against. And the extraction may be the cause only if the printed
+formula and the true one differ in nothing but characters of the kinds that were lost at this place.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from symrot.checker.claim.claims import Claim, read_claims
-from symrot.checker.claim.tree import text
+from symrot.checker.claim.reader import Declared, read_expression, read_relation
+from symrot.checker.claim.tree import Node, product, sum_of, text, walk
 from symrot.checker.claim_verdict import check_readings
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.rounding import rounded_value
 from symrot.checker.verdict import Verdict
-from symrot.textbook import Document
+from symrot.errors import InputError
+from symrot.textbook import Document, errata
 
-__all__ = ["OUTCOMES", "Finding", "findings"]
+__all__ = ["LOSSES", "OUTCOMES", "Finding", "differs_by_lost_characters", "finding_of", "findings"]
 
 OUTCOMES = {
     "holds": "holds",
@@ -22,30 +32,46 @@ OUTCOMES = {
 }
 """Outcome of a claim -> its description, from good to bad."""
 
-
-EXPLAINS = {
-    "minus signs": {"sign_of_term", "overall_sign", "inertia_product_sign"},
-    "dots": {"wrong_symbol"},
-    "primes": {"wrong_symbol"},
-}
-"""Characters that an extraction may lose -> codes of the faults that a true formula without them seems to have."""
+ANGLES = ("sin", "cos", "tan", "cot", "sec", "csc")
+"""Functions of angles."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of checking one claim of a document: data, verdict, an alternative reading that is true, outcome."""
+    """The result of checking one claim of a document.
+
+    Attributes
+    ----------
+    claim : dict
+        The data of the claim.
+    verdict : Verdict
+    outcome : str
+        A key of ``OUTCOMES``.
+    reading : str
+        Another reading of the text that holds, else empty.
+    right : str
+        The right formula, or the right digits of a worked number, if the claim is not true.
+    parts, corrected : mapping of str to Node
+        The trees of the claim by place, and the corrected trees.
+    conditions : tuple of str
+        Conditions that the document does not state, and that quantities with their usual signs may break. A true
+        formula needs all of these conditions; a conditional formula needs any one of them.
+    """
 
     claim: dict[str, Any]
     verdict: Verdict
     outcome: str
-    reading: str  # the alternative that holds, else empty
-    right: str  # the right formula, if the claim is not true
+    reading: str = ""
+    right: str = ""
+    parts: Mapping[str, Node] = field(default_factory=dict)
+    corrected: Mapping[str, Node] = field(default_factory=dict)
+    conditions: tuple[str, ...] = ()
 
     @property
     def reason(self) -> str:
         """Why the claim is not simply true."""
-        if self.verdict.verdict == "conditional":
-            return "true if " + " or ".join(self.verdict.requires)
+        if self.outcome == "conditional":
+            return "true if " + " or ".join(self.conditions)
         if self.verdict.diagnosis.code != "none":
             return self.verdict.diagnosis.text
         return str(self.verdict.counterexample or self.verdict.reason)
@@ -55,27 +81,147 @@ def findings(
     document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Finding]:
     """Yield the result of checking each claim of a document, in the order of the document."""
+    proposals = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
     for claim in read_claims(document.path):
         progress(f"checking {claim.id} ..")
-        yield _finding(document.claims[claim.id], claim, repair)
+        yield finding_of(document.claims[claim.id], claim, repair, proposals.get(claim.id, {}))
 
 
-def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
+def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str]) -> Finding:
+    """Return the result of checking one claim with its ``data``; the proposed correction may be empty."""
+    if "editable" not in data:
+        claim = replace(claim, editable=("left",))  # the left side is what the document prints
+    lost = data.get("lost", [])
+    readings = tuple(other for other in claim.alternatives if _is_reading(claim, other, lost))
+    claim = replace(claim, alternatives=readings)
     verdict, other = check_readings(claim, repair)
     if verdict:
-        return Finding(data, verdict, "holds", "", "")
+        conditions = tuple(condition for condition in verdict.conditions if _may_be_broken(condition))
+        return Finding(data, verdict, "conditional" if conditions else "holds", conditions=conditions)
     if other is not None:
         return Finding(data, verdict, "other reading", other.text, other.text)
-    outcome = {"conditional": "conditional", "undecided": "undecided"}.get(verdict.verdict, "fails")
-    if outcome == "fails" and any(verdict.diagnosis.code in EXPLAINS.get(what, ()) for what in data.get("lost", [])):
-        outcome = "fails or lost"
-    return Finding(data, verdict, outcome, "", _right_form(claim, verdict))
-
-
-def _right_form(claim: Claim, verdict: Verdict) -> str:
-    """Return the corrected formula: the exact value, the nearest proven repair, or the side that symrot derived."""
+    if verdict.verdict != "false":
+        outcome = "conditional" if verdict.verdict == "conditional" else "undecided"
+        return Finding(data, verdict, outcome, conditions=verdict.requires)
     if claim.relation is None:
-        return verdict.counterexample.lhs if verdict.counterexample else ""
-    if verdict.repairs:
-        return verdict.repairs[0].text
-    return text(claim.relation[2])
+        return Finding(data, verdict, "fails", right=rounded_value(claim))
+    parts = {"left": claim.relation[1], "right": claim.relation[2], **dict(claim.define)}
+    corrected = _correction(claim, verdict, proposal)
+    is_loss = corrected and all(
+        differs_by_lost_characters(parts[place], tree, lost) for place, tree in corrected.items()
+    )
+    right = " with ".join(f"{text(tree)}" if place in ("left", "right") else f"{place} = {text(tree)}"
+                          for place, tree in corrected.items())  # fmt: skip
+    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected)
+
+
+def _may_be_broken(condition: str) -> bool:
+    """Return whether quantities with their usual signs may break a condition.
+
+    Such a condition is about an angle, as ``sin(theta) != 0`` is, or is an inequality with a difference or between two
+    quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment of inertia is positive by its meaning.
+    """
+    sign, *trees = read_relation(condition)
+    sides = [[node for _, node in walk(tree)] for tree in trees]
+    nodes = [node for side in sides for node in side]
+    is_on_an_angle = any(node.kind == "call" and node.value in ANGLES for node in nodes)
+    has_difference = any(node.kind == "neg" for node in nodes) or all(
+        any(node.kind == "name" for node in side) for side in sides
+    )
+    return is_on_an_angle or (sign != "!=" and has_difference)
+
+
+def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
+    """Return the corrected parts of a claim, by place: a proven proposal or the nearest repair; empty without these.
+
+    Raises
+    ------
+    InputError
+        For a proposal that changes a part which is not printed, or that the exact engine does not prove.
+    """
+    changes = proposal or (verdict.repairs[0].edited if verdict.repairs else {})
+    names = {*claim.symbols, *(name for name, _ in claim.define)}
+    trees = {}
+    for place, source in changes.items():
+        if place not in claim.editable:
+            raise InputError(f"{claim.id}: proposal: expected one of {', '.join(claim.editable)}, got {place!r}")
+        trees[place] = read_expression(source, f"{claim.id}: {place}", Declared(names, claim.functions))
+    if proposal and decide_equation(claim.with_parts(trees).equation).verdict != "true":
+        raise InputError(
+            f"{claim.id}: proposal: expected a formula that is true, got {' and '.join(proposal.values())!r}"
+        )
+    return trees
+
+
+# -- characters that the extraction lost -------------------------------------------------------------------------------
+
+
+def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
+    """Return a function that removes the outermost piece of a tree if it is of one of the kinds."""
+    return lambda node: node.args[0] if node.kind in kinds else node
+
+
+def _without_dots(node: Node) -> Node:
+    return node.args[0] if node.kind == "call" and node.value == "diff" else node
+
+
+def _without_transpose(node: Node) -> Node:
+    return node.args[0] if node.kind == "transpose" or (node.kind, node.value) == ("call", "transpose") else node
+
+
+def _without_primes(node: Node) -> Node:
+    return (
+        replace(node, value=str(node.value).rstrip("p")) if node.kind == "name" and len(str(node.value)) > 1 else node
+    )
+
+
+LOSSES: dict[str, Callable[[Node], Node]] = {
+    "minus signs": _inner(["neg"]),
+    "fraction bars": _inner(["inv"]),
+    "absolute-value bars": _inner(["power"]),
+    "transposes": _without_transpose,
+    "dots": _without_dots,
+    "primes": _without_primes,
+}
+"""Kind of characters that an extraction may lose -> what the loss does to a piece of a formula. A power on lost bars is
+lost with them."""
+
+
+def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
+    """Return whether a relation is another reading of the printed text of a claim."""
+    assert claim.relation is not None
+    return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)
+
+
+def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]) -> bool:
+    """Return whether two formulas differ only in lost characters, or in their order if ``lost`` has "token order".
+
+    Examples
+    --------
+    >>> from symrot.checker.claim.reader import read_expression
+    >>> printed, right = read_expression("a + b"), read_expression("a - b")
+    >>> differs_by_lost_characters(printed, right, ["minus signs"])
+    True
+    >>> differs_by_lost_characters(printed, right, ["dots"])
+    False
+    """
+    first, second = (_extracted(tree, lost) for tree in (printed, right))
+    if "token order" in lost:
+        return Counter(_letters(first)) == Counter(_letters(second))
+    return first == second
+
+
+def _extracted(node: Node, lost: Collection[str]) -> Node:
+    """Return a formula without the characters, of the kinds ``lost``, that an extraction loses."""
+    node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
+    for loss in lost:
+        node = LOSSES[loss](node) if loss in LOSSES else node
+    if node.kind in ("sum", "product"):
+        return (sum_of if node.kind == "sum" else product)(list(node.args))
+    return node
+
+
+def _letters(tree: Node) -> list[Any]:
+    """Return the letters, numbers, signs and bars of a formula in the order in which they are read."""
+    kinds = ("name", "number", "call", "neg", "inv", "transpose")
+    return [(node.kind, node.value) for _, node in walk(tree) if node.kind in kinds]

@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from symrot.checker.marks import html_with_marks, latex_with_marks
 from symrot.exact.evidence import Counterexample
 
 __all__ = ["Diagnosis", "Dimensions", "Identification", "Repair", "Verdict"]
@@ -42,9 +43,15 @@ class Repair:
     code : str
         Key of the table of faults.
     cost : float
-        The smaller, the nearer to the claim.
+        The distance from the claim: a smaller cost means a nearer formula.
     proven : bool
         Whether the exact engine proved it.
+    edited : dict of str to str
+        The changed parts of the claim, ``"left"``, ``"right"`` or the name of a definition, with their new text.
+    changed : tuple of (int, int)
+        Start and end of each piece of the text that differs from the claim.
+    entry : (int, int) or None
+        Row and column, from 1, of the only entry that differs, if a side is a matrix.
 
     Examples
     --------
@@ -52,12 +59,32 @@ class Repair:
     >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     >>> verdict.repairs[0].text
     'sin(2*x) == 2*sin(x)*cos(x)'
+    >>> verdict.repairs[0].html
+    'sin(2*x) == <mark>2*</mark>sin(x)*cos(x)'
     """
 
     text: str
     code: str
     cost: float
     proven: bool = True
+    edited: dict[str, str] = field(default_factory=dict)
+    changed: tuple[tuple[int, int], ...] = ()
+    entry: tuple[int, int] | None = None
+
+    @property
+    def html(self) -> str:
+        """The text as HTML, with the pieces that differ from the claim in ``<mark>``."""
+        return html_with_marks(self.text, self.changed)
+
+    @property
+    def latex(self) -> str:
+        """The text of a repair in LaTeX, with the pieces that differ from the claim underlined."""
+        return latex_with_marks(self.text, self.changed)
+
+    @property
+    def note(self) -> str:
+        """The code of the fault in brackets, and the entry of a matrix that differs."""
+        return f"[{self.code}, entry {self.entry}]" if self.entry else f"[{self.code}]"
 
 
 @dataclass(frozen=True)
@@ -69,7 +96,7 @@ class Dimensions:
     status : str
         ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
     text : str
-        Where they do not fit.
+        Where the units do not fit.
     units : dict of str to str
         Units that follow for names that came without a unit.
 
@@ -140,8 +167,8 @@ class Verdict:
         names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
         formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it).
     conditions : tuple of str
-        Conditions under which both sides are defined, ``"sin(theta) != 0"``; of a conditional claim the requirements
-        first.
+        Conditions under which both sides are defined, such as ``"sin(theta) != 0"``; for a conditional claim, its
+        requirements come first.
     requires : tuple of str
         Requirements of a conditional claim beyond being defined; any one of them suffices.
     counterexample : Counterexample or None
@@ -150,7 +177,8 @@ class Verdict:
     repairs : tuple of Repair
         At most three, nearest first.
     recognised_as : tuple of Identification
-        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first.
+        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first; for a
+        claim that is false by its context, the formula that is meant.
     reason : str
         The reason why a claim is undecided or refused; otherwise empty.
     dimension : Dimensions
@@ -160,9 +188,11 @@ class Verdict:
     id, where, text : str
         The name of the claim, its place in a document, and its text.
     seconds : float
-        The time that it took.
+        The time that the check took.
     reading : str
         The claim as it was read, in the notation of the input; empty if it is no different from the text.
+    context : str
+        What is stated in words about names, body, frame and sequence, as it was understood.
 
     Examples
     --------
@@ -186,6 +216,7 @@ class Verdict:
     text: str = ""
     seconds: float = 0.0
     reading: str = ""
+    context: str = ""
 
     @property
     def entry(self) -> tuple[int, int] | None:
@@ -203,10 +234,12 @@ class Verdict:
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         near = self.verdict == "doubtful"
-        kinds = ["near to" if near else "formula of", *["or to" if near else "or of"] * len(self.recognised_as)]
+        first = {"doubtful": "near to", "false": "meant"}.get(self.verdict, "formula of")
+        kinds = [first, *["or to" if near else "or of"] * len(self.recognised_as)]
         rows = [
             ("claim", self.text),
             ("read as", self.reading),
+            ("context", self.context),
             *((kind, f"the {reading}") for kind, reading in zip(kinds, self.recognised_as, strict=False)),
             ("true if", " or ".join(self.requires)),
             ("where", ", ".join(defined)),
@@ -215,7 +248,7 @@ class Verdict:
             ("units", self.dimension.text),
             *(("note", note) for note in self.notes),
             ("diagnosis", f"{self.diagnosis.text} [{self.diagnosis.code}]" if wrong else ""),
-            *(("instead" if near else "true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
+            *(("instead" if near else "true instead", f"{repair.text}  {repair.note}") for repair in self.repairs),
         ]
         return [(name, text) for name, text in rows if text]
 
@@ -233,12 +266,17 @@ class Verdict:
             },
             "diagnosis": {"code": self.diagnosis.code, "text": self.diagnosis.text},
             "repairs": [
-                {"text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven} for r in self.repairs
+                {
+                    "text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven,
+                    "changed": [list(span) for span in r.changed], "entry": list(r.entry) if r.entry else None,
+                }
+                for r in self.repairs
             ],
             "seconds": round(self.seconds, 4),
             "where": self.where,
             "claim": self.text,
             "reading": self.reading,
+            "context": self.context,
             "requires": list(self.requires),
             "reason": self.reason,
             "dimension": {

@@ -6,7 +6,7 @@ Texts come from :mod:`symrot.report`. The exit codes are 0 for success, 1 if a c
 
 import os
 import sys
-from argparse import ArgumentParser, HelpFormatter, Namespace
+from argparse import ArgumentParser, HelpFormatter, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -265,7 +265,8 @@ def _check(options: Namespace) -> int:
         raise InputError("--all: expected --textbook all as well, since the page contains every document")
     if options.textbook:
         return _check_textbook(options)
-    results = verdicts.check(options.claim, options.hypotheses, options.unit, not options.no_repair, progress)
+    stated = {key: getattr(options, key) for key in ("where", "body", "frame", "sequence")}
+    results = verdicts.check(options.claim, options.hypotheses, options.unit, not options.no_repair, progress, stated)
     progress("")
     if options.json:
         say_json([verdict.to_json() for verdict in results])
@@ -283,14 +284,16 @@ def _check_textbook(options: Namespace) -> int:
     from symrot.textbook import DOCUMENTS
 
     names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
-    target = Path(options.output) / "errata.md"
-    if options.all:
-        files.check_target(target, (".md",), "--output")
+    pages = {Path(options.output) / "errata.md": errata.page, Path(options.output) / "errata.html": errata.html}
+    for target in pages if options.all else ():
+        files.check_target(target, (".md", ".html"), "--output")
     documents = errata.survey(names, not options.no_repair, progress)
     progress("")
     if options.all:
-        files.write(target, lambda stream: stream.write(errata.page(documents).encode("utf-8")))
-        say([f"{target}: written"])
+        for target, page in pages.items():
+            content = page(documents).encode("utf-8")
+            files.write(target, lambda stream, content=content: stream.write(content))  # type: ignore[misc]
+            say([f"{target}: written"])
     elif options.json:
         say_json(errata.facts(documents))
     else:
@@ -299,7 +302,9 @@ def _check_textbook(options: Namespace) -> int:
 
 
 def _identify(options: Namespace) -> int:
-    identifications = symrot.identify(options.formula)
+    identifications = symrot.identify(
+        options.formula, body=options.body, frame=options.frame, sequence=options.sequence
+    )
     if options.json:
         say_json([identification.to_json() for identification in identifications])
     else:
@@ -432,18 +437,13 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "claim", metavar="CLAIM", nargs="?", help="'left = right' as typed text, SymPy's text or LaTeX, or a FILE.toml"
     )
-    parser.epilog = ("Typed text: 2x, m g l and x(y + 1) are products; x^2, x², ½, √x, 45°, ω₁, φ̇, θ'' and dx/dt "
-                     "are read; sin 2x, sin^2 x and tan^-1 x need no brackets; R = [a, b; c, d] is a matrix, a × b a "
-                     "product of vectors; a = b = c is decided link by link, several lines one by one. SymPy's text, "
-                     "with ** and ==, keeps its meaning. A text with two readings, such as 1/2m or sin x y, gets the "
-                     "verdict on the usual one, and a note on the other if its verdict differs. docs/checkers.md has "
-                     "the whole language. Budget per claim: 20 000 characters and 1 000 000 products of terms; a "
-                     "claim beyond it is refused, or undecided for this reason. The budget is counted, so that all "
-                     "machines give the same verdict; only a claim for which SymPy needs more than 20 s of processor "
-                     "time is undecided because of its time.")  # fmt: skip
+    from symrot.checker.language import help_text
+
+    parser.formatter_class = RawDescriptionHelpFormatter
+    parser.epilog = help_text()
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
-    parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
+    parser.add_argument("--all", action="store_true", help="with --textbook all: write the pages of errata")
     parser.add_argument(
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
     )
@@ -451,14 +451,30 @@ def _check_arguments(parser: ArgumentParser) -> None:
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+    parser.add_argument("--where", metavar="'NAME = WORDS'", action="append", default=[],
+                        help="what a name means, with a claim as text: 'I = moment of inertia about the centre', "
+                        "'p = spin'; may be repeated")  # fmt: skip
+    _context_options(parser)
     parser.add_argument("--strict", action="store_true",
                         help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     json_option(parser)
 
 
+def _context_options(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--body", metavar="WORDS", default="", help="the body: 'solid cylinder of radius r and height h'"
+    )
+    parser.add_argument(
+        "--frame", metavar="FRAME", default="", help="frame of angular velocities and rates: body or space"
+    )
+    parser.add_argument("--sequence", metavar="SEQUENCE", default="",
+                        help="Euler angles: ZXZ or 3-1-3 about moving axes, zyx about fixed axes")  # fmt: skip
+
+
 def _identify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
+    _context_options(parser)
     json_option(parser)
 
 

@@ -24,6 +24,7 @@ from symrot.exact.decision import (
     Case,
     Decision,
     Shape,
+    arguments,
     congruence,
     first_decision,
     flatten,
@@ -167,7 +168,7 @@ def normalise(case: _FormulaCase) -> None:
 
 
 def witness(case: _FormulaCase) -> None:
-    """Look for a counterexample: a rational point first, then a point with closed-form values."""
+    """Store a counterexample in ``case``, if one is found: a rational point, or else one with closed-form values."""
     case.rely_on(case.proof_rings)
     case.counterexample = case.search(rational_witness, closed_form_witness)
 
@@ -179,7 +180,7 @@ def leave_open(case: _FormulaCase) -> Decision:
     return Decision("undecided", case.conditions, stopped_by=stopped_by)
 
 
-STAGES = (subtract, normalise, prove, witness, refute, congruence, leave_open)
+STAGES = (subtract, normalise, prove, witness, refute, arguments, congruence, leave_open)
 
 
 def _shaped(entries: list[Expr], shape: Shape) -> Any:

@@ -19,12 +19,13 @@ from symrot.exact.congruence_closure import proof_by_congruence
 from symrot.exact.evidence import Counterexample, Requirement
 from symrot.exact.intervals import enclosure
 from symrot.exact.inverse_sums import proof
-from symrot.exact.ring.ratio import Ratio
+from symrot.exact.plain_arguments import proof_by_arguments
+from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = [
-    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "congruence", "first_decision", "flatten", "matched_sides",
-    "place_in_matrix", "prove", "refute", "shape_text", "subtract",
+    "Case", "Decision", "Search", "Shape", "ShapeMismatch", "arguments", "congruence", "first_decision", "flatten",
+    "matched_sides", "place_in_matrix", "prove", "refute", "shape_text", "subtract",
 ]  # fmt: skip
 
 MOST_SEARCHED = 4
@@ -127,7 +128,7 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that ``search`` finds, in the given entries (default: the unproven ones).
+        """Return the first counterexample that ``searches`` find in the entries ``places`` (default: unproven entries).
 
         A point that provably violates a hypothesis is skipped.
         """
@@ -150,8 +151,6 @@ C = TypeVar("C", bound=Case)
 
 def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) -> Decision:
     """Pass an equation (``case``) through stages of decision; return the decision of the first stage that decides.
-
-    The last stage always decides.
 
     The last stage always decides.
     """
@@ -189,8 +188,24 @@ def refute(case: Case) -> Decision | None:
     return Decision("false", case.conditions, counterexample=case.counterexample)
 
 
+def arguments(case: Case) -> Decision | None:
+    """Return the decision "true" if open entries become equal once arguments of functions are shortened; else None."""
+    ring = case.ring
+    try:
+        proofs = [
+            proof_by_arguments(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven
+        ]
+    except TooLarge:
+        return None
+    if None in proofs:
+        return None
+    case.unproven = []
+    case.rely_on((*case.proof_rings, *(ring for rings in proofs if rings for ring in rings)))
+    return case.confirmed()
+
+
 def congruence(case: Case) -> Decision | None:
-    """Decide an equation whose open entries become equal if inverse functions replace equal ones; else return None."""
+    """Return the decision "true" if open entries become equal once equal inverse functions are merged; else None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:

@@ -60,12 +60,21 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative."""
+    """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative.
+
+    The formulas ``signs`` must be nonnegative; those that are also in ``strict`` must be positive.
+    """
 
     code: str
     text: str
     zeros: tuple[Expr, ...] = ()
     signs: tuple[Expr, ...] = ()
+    strict: tuple[Expr, ...] = ()
+
+    @property
+    def conditions(self) -> list[tuple[Expr, str]]:
+        """The conditions on signs, each as (formula, ``"> 0"`` or ``">= 0"``)."""
+        return [(formula, "> 0" if formula in self.strict else ">= 0") for formula in self.signs]
 
     def __str__(self) -> str:
         return self.text

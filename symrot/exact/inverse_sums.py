@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
+from sympy import Abs, Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
@@ -22,6 +22,7 @@ from symrot.exact.angles.inverse import INVERSE, range_of
 from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
+from symrot.exact.sign_cases import vanishes_for_all_signs
 
 __all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
@@ -52,6 +53,8 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     """
     numerator = ring.reduce(numerator)
     if not numerator:
+        return ()
+    if vanishes_for_all_signs(ring, numerator):
         return ()
     for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
@@ -103,10 +106,10 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
+    """Return a proof of where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
 
-    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin and atan, in [0, pi] for
-    acos. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
+    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
+    between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
@@ -128,14 +131,16 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
-                return PrincipalValueProof((angle - least, most - angle), (), (other, *further))
+                ends = (angle - least, most - angle)
+                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+                return PrincipalValueProof(edge, inside, (other, *further))
     return None
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven.
+    """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
 
-    It is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
+    The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
@@ -153,21 +158,35 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(sqrt(P), x)`` is an angle w, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w).
+    """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
 
-    It is w for w in [0, pi] and positive r.
+    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
+    positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in
+    [-pi/2, pi/2] and positive r.
     """
     y, x = leaf.args
-    radius = (x / cos(angle)).cancel()
-    if not (y.is_Pow and y.exp == Rational(1, 2)) or radius.has(cos(angle)) or radius.is_nonpositive:
-        return None
-    square = radius**2 * sin(angle) ** 2
-    with suppress(InputError):  # an angle that cannot be read proves nothing
-        other = FormulaRing([y.base, square], ring.hypotheses, ring.domain)
-        further = proof(other, other.difference(y.base, square).numerator)
-        if further is not None:
-            return PrincipalValueProof((angle, pi - angle), (radius,), (other, *further))
+    for root, other_part, own, other_function, ends in (
+        (y, x, sin, cos, (angle, pi - angle)),
+        (x, y, cos, sin, (angle + pi / 2, pi / 2 - angle)),
+    ):
+        below = _square(root)
+        radius = (other_part / other_function(angle)).cancel()
+        if below is None or radius.has(other_function(angle)) or radius.is_nonpositive:
+            continue
+        square = radius**2 * own(angle) ** 2
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other = FormulaRing([below, square], ring.hypotheses, ring.domain)
+            further = proof(other, other.difference(below, square).numerator)
+            if further is not None:
+                return PrincipalValueProof(ends, (radius,), (other, *further))
     return None
+
+
+def _square(formula: Expr) -> Expr | None:
+    """Return the square of a square root or an absolute value; None for any other formula."""
+    if formula.is_Pow and formula.exp == Rational(1, 2):
+        return formula.base
+    return formula.args[0] ** 2 if isinstance(formula, Abs) else None
 
 
 _PRINCIPAL = {asin: (sin, -pi / 2, pi / 2), acos: (cos, Integer(0), pi), atan: (tan, -pi / 2, pi / 2)}

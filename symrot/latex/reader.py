@@ -56,7 +56,7 @@ class _Reader:
         """Read a row of items and the token that closes it, such as a brace; return the row."""
         row = self.row(closing, closing)
         self.place += 1
-        return Row(row.items, opening.start, row.end)
+        return Row(_with_old_fractions(row).items, opening.start, row.end)
 
     def item(self) -> Node:
         """Read an item with its scripts (index, power and primes) and return its node."""
@@ -143,6 +143,17 @@ class _Reader:
         if len(lines) > 1 and len(lines[-1]) == 1 and not lines[-1][0].items:
             lines.pop()
         return Table(token.text, tuple(map(tuple, lines)), token.start)
+
+
+def _with_old_fractions(row: Row) -> Row:
+    """Return a row of which ``above \\over below`` is one fraction."""
+    place = next((n for n, item in enumerate(row.items) if item.text == "\\over"), None)
+    if place is None:
+        return row
+    above, below = row.items[:place], row.items[place + 1 :]
+    middle = row.items[place].start
+    fraction = Fraction("\\frac", Row(above, row.start, middle), Row(below, middle, row.end), middle)
+    return Row((fraction,), row.start, row.end)
 
 
 READERS: dict[str, Callable[[_Reader, Token], Node]] = {

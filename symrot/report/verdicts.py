@@ -1,15 +1,20 @@
 """Verdicts on claims as text: in full for one claim, as a list with a count for a file of claims."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
-from symrot.checker.verdict import Verdict
+from symrot.checker.marks import carets
+from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 from symrot.report.layout import duration, one_line, room
 
 __all__ = ["check", "lines"]
+
+INDENT = 18
+"""The column at which what a verdict says begins."""
 
 VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
 """The verdicts in the order in which they are counted."""
@@ -21,27 +26,34 @@ def check(
     units: Sequence[str],
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
+    stated: Mapping[str, Any] | None = None,
 ) -> list[Verdict]:
     """Decide a claim (text or LaTeX), or all claims of a file, and return the verdicts.
+
+    ``stated`` is the context of a claim in words: where, body, frame and sequence.
 
     A claim in a file that cannot be parsed gets the verdict ``"refused"``.
 
     Raises
     ------
     InputError
-        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses given together with a file.
+        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses, units or a context together
+        with a file.
     """
     from symrot.checker.interface import check as check_text
     from symrot.checker.interface import verdicts_of_file
 
     if not _is_file(source):
-        return [check_text(source, assume=assumptions, units=_units(units), repair=repair)]
+        return [check_text(source, assume=assumptions, units=_units(units), repair=repair, **(stated or {}))]
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
         raise InputError("--unit: expected a claim as text, got a file; a file states its own units")
     if assumptions:
         raise InputError("--given: expected a claim as text, got a file; a file states its own hypotheses")
+    for option, value in (stated or {}).items():
+        if value:
+            raise InputError(f"--{option}: expected a claim as text, got a file; a file states its own context")
     return list(verdicts_of_file(source, repair, progress))
 
 
@@ -80,7 +92,23 @@ def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
 
 def _full(verdict: Verdict, head: str) -> list[str]:
     rows = [head]
+    repairs = {f"{repair.text}  {repair.note}": repair for repair in verdict.repairs}
     for name, text in verdict.facts():
-        rows += wrap(one_line(text), room(), initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * 18,
+        lines = wrap(one_line(text), room(), initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * INDENT,
                      break_long_words=False, break_on_hyphens=False)  # fmt: skip
+        repair = repairs.get(text) if "instead" in name else None
+        rows += lines if repair is None else _with_carets(lines, repair)
+    return rows
+
+
+def _with_carets(lines: Sequence[str], repair: Repair) -> list[str]:
+    """Return the lines of a repair with carets under the pieces that differ from the claim."""
+    rows, place = [], 0
+    for line in lines:
+        piece = line[INDENT:]
+        place = repair.text.find(piece[:1], place) if piece else place
+        end = place + len(piece)
+        marks = carets(repair.changed, place, min(end, len(repair.text)))
+        rows += [line, " " * INDENT + marks] if marks else [line]
+        place = end
     return rows

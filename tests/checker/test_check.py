@@ -1,4 +1,4 @@
-"""Verdicts on claims: true claims are called true, with conditions; false claims get a counterexample.
+"""Verdicts on claims: a true claim is called true with its conditions, a false claim comes with a point.
 
 Every counterexample is evaluated again by mpmath from the text of the claim, without code of the checker.
 """
@@ -68,7 +68,7 @@ def number(source):
 
 @workdps(40)
 def values_at(claim, values):
-    """Return both sides by mpmath, from the text (scalars only); angles given by cosine and sine are recovered."""
+    """Return both sides' values, computed by mpmath from the text (scalars only); cosines and sines give the angles."""
     names = {f: getattr(mp, f) for f in ("sin", "cos", "tan", "cot", "sqrt", "pi")} | {"abs": abs}
     for key, value in values.items():
         found = mp.mpf(eval(re.sub(r"(\d+)", r"mpf(\1)", value), {"mpf": mp.mpf, "pi": mp.pi, "sqrt": mp.sqrt}))
@@ -151,7 +151,7 @@ REFUSED = (
     ("x = = 1", "position 5"),
     ("1 == 2 < 3", "a chain of equals signs"),
     ("x + y", "'=='"),
-    ("x < y", "'=='"),
+    ("x < y", "an inequality is not decided"),
     ("x 2 == 1", "position 3"),
     ("x^^2 == 1", "position 3"),
     ("t' == 1", "depend on t"),
@@ -166,11 +166,10 @@ REFUSED = (
     ("eye(2)*eye(3) == 0", "3 x 3"),
     ("eye(2) == eye(3)", "one shape"),
     ("eye(2)[2, 0] == 0", "indices"),
-    ("x**sin(y) == 1", "exponent"),
-    ("x**65 == 1", "exponent"),
+    ("x**1000001 == 1", "exponent"),
     ("((9**64)**64)**64 == x", "bits"),
     ("sin(1000000*x) == 0", "terms"),
-    ("((x + 1)**64)**64 == 1", "degree"),
+    ("(sin(x)**640)**640 == (1 - cos(x)**2)**(320*640)", "degree"),
     ("sqrt(-1) == x", "not negative"),
     ("cross((1, 2), (3, 4)) == 0", "3 x 1"),
     ("Matrix([[1, 2], [3]]) == 0", "equal length"),

@@ -190,7 +190,8 @@ def test_json_has_the_fields_that_were_promised_and_is_the_same_twice(tmp_path, 
         assert list(entry)[: len(FIELDS)] == list(FIELDS)
         assert all(isinstance(entry[name], kind) for name, kind in FIELDS.items() if name != "seconds")
         assert list(entry["diagnosis"]) == ["code", "text"]
-        assert all(list(repair) == ["text", "code", "cost", "proven"] for repair in entry["repairs"])
+        fields = ["text", "code", "cost", "proven", "changed", "entry"]
+        assert all(list(repair) == fields for repair in entry["repairs"])
     (wrong,) = (entry for entry in found if entry["verdict"] == "false")
     assert list(wrong["counterexample"]) == ["values", "lhs", "rhs", "entry"]
     assert wrong["diagnosis"]["code"] == wrong["repairs"][0]["code"] == "sign_of_term"

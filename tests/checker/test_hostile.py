@@ -24,9 +24,9 @@ TEXTS = {
     "functions nested 1000 deep": ("sin(" * 1_000 + "x" + ")" * 1_000 + " == x", "nested"),
     "4500 signs": ("-" * 4_500 + "(" * 61 + "x" + ")" * 61 + " == x", "nested"),
     "10 000 symbols": ("+".join(f"x{n}" for n in range(10_000)) + " == 1", "at most"),
-    "a tower": ("x**x**x == 1", "a number as an exponent"),
-    "a tower of numbers": ("9**9**9 == x", "exponent up to 64"),
-    "a high power": ("(a + b)**1000 == 1", "exponent up to 64"),
+    "a tower": ("**".join("x" * 20) + " == 1", "nested|inside each other"),
+    "a tower of numbers": ("9**9**9 == x", "exponent up to 1000000"),
+    "a high power": ("(a + b)**10000000 == 1", "exponent up to 1000000"),
     "a high power of a matrix": (f"{full_matrix(6)}**60 == 0", "at most 200000 symbols"),
     "powers of powers of a matrix": ("(Matrix([[a, b], [c, d]])**64)**64 == 0", "at most 200000 symbols"),
     "a large determinant": (f"det({full_matrix(12)}) == 0", "instead of 479001600"),
@@ -48,7 +48,6 @@ TEXTS = {
     "a Cyrillic letter": ("х == 1", "position 1"),
     "a wide letter": ("ｘ == 1", "position 1"),
     "a vector that is a number": ("n̂ == 1", "two sides of one shape|a vector without a hat"),
-    "a sign for both signs": ("x ± y == 0", "write two claims"),
     "a hidden letter": ("x\u200b == 1", "position 2"),
     "a turned text": ("x\u202e == 1", "position 2"),
     "a null": ("x\0 == 1", "position 2"),
@@ -67,7 +66,7 @@ TEXTS = {
     "2000 methods": ("x" + ".T" * 2000 + " = 1", "fewer methods"),
     "900 lines": ("x = y\n" * 900, "at most 30 equations|not a chain"),
     "a chain of 900": ("x = " * 900 + "x", "at most 30 equations|not a chain"),
-    "a raised tower": ("(x + y)⁹⁹⁹ = 1", "exponent up to 64"),
+    "a raised tower": ("(x + y)⁹⁹⁹⁹⁹⁹⁹⁹⁹ = 1", "exponent up to 1000000"),
     "a chain of crosses": (" × ".join("abc" * 20) + " = 1", "comes first"),
     "a method of another name": ("x.applyfunc(eval) == 1", "after '.'"),
     "a method of SymPy that runs code": ("x.subs(y, z) == x.evalf() + x.free_symbols", "after '.'"),
@@ -114,7 +113,7 @@ LATEX = {
     "an input": r"\input{/etc/passwd} = 1",
     "a write": r"\immediate\write18{true} = 1",
     "division by zero": r"\frac{1}{0} = x",
-    "a tower": r"\alpha^{\alpha^{\alpha}} = 1",
+    "a tower": r"\alpha^{" * 20 + r"\alpha" + "}" * 20 + " = 1",
 }
 
 
@@ -167,7 +166,7 @@ def test_a_hostile_file_is_refused_in_one_sentence(content, words, tmp_path, cap
 
 
 def test_nothing_is_evaluated_as_python(tmp_path):
-    """The claims are checked in a separate process with a time limit."""
+    """The claims are checked in a separate process, with a guard against hanging."""
     mark = tmp_path / "mark"
     attacks = [f"__import__('pathlib').Path('{mark}').touch() == 1", f"open('{mark}', 'w') == 1", "exec('1') == 1"]
     for attack in attacks:
@@ -205,7 +204,7 @@ HEAVY = {
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("text", HEAVY.values(), ids=HEAVY)
 def test_what_cannot_be_multiplied_out_is_disproved_as_it_is_written(text):
-    """Budgets are counts, so every machine gives the verdict after the same work."""
+    """The budgets are counts, so every machine does the same work before it gives up multiplying out."""
     verdict = symrot.check(text)
     assert verdict.verdict == "false"
     assert verdict.counterexample is not None

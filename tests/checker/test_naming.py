@@ -88,8 +88,8 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, ca
     assert verdict.verdict == "doubtful" and not verdict
     assert verdict.diagnosis.code == code
     assert str(verdict.recognised_as[0]).startswith(name)
-    (repair,) = verdict.repairs
-    assert symrot.check(repair.text).verdict == "recognised"
+    assert 1 <= len(verdict.repairs) <= 3
+    assert all(symrot.check(repair.text).verdict == "recognised" for repair in verdict.repairs)
     assert main(["check", claim]) == 1
     assert "instead:" in capsys.readouterr().out
 
@@ -165,7 +165,7 @@ def test_a_fault_in_a_formula_for_a_multiple_or_a_rate_is_named(claim, repaired)
     "M dt = I dω", "tan(beta) = cos(theta)*tan(alpha)",
 ])  # fmt: skip
 def test_a_relation_of_quantities_is_not_called_false(claim):
-    """Whether it holds depends on the meaning of its letters, which the claim does not state."""
+    """Whether it holds depends on what its letters mean, and nothing in the claim says what they mean."""
     assert symrot.check(claim).verdict == "definition"
 
 
@@ -182,7 +182,7 @@ def test_a_wrong_identity_stays_false(claim):
     "L_x = I_xx omega_x + I_xy omega_y + I_yz omega_z", r"\omega_3 = \dot\theta_1\sin\theta_2 + \dot\theta_2",
 ])  # fmt: skip
 def test_no_renaming_tears_axes_or_angles_from_their_names(claim):
-    """Each formula would be known if some of its axes were exchanged and others were not."""
+    """Each claim would be a known formula if only some of its axes were exchanged."""
     assert symrot.check(claim).verdict != "recognised"
 
 
@@ -206,7 +206,7 @@ def test_names_that_are_equal_have_the_same_formula():
     assert symrot.check("Ixx = Iyy = m(3r² + h²)/6").verdict == "doubtful"
 
 
-@pytest.mark.parametrize("claim", ["β₀² + β₁² + β₂² + β₃² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g^2 R = 0"])
+@pytest.mark.parametrize("claim", ["a₀² + b₁² + c₂² = 1", "λ_1 Ω² cos θ − λ_3 ω Ω + M g^2 R = 0"])
 def test_a_constraint_of_quantities_is_not_called_false(claim):
     assert symrot.check(claim).verdict == "definition"
 
@@ -242,6 +242,12 @@ def test_chains_in_latex_are_decided_link_by_link():
 @pytest.mark.parametrize(("claim", "name"), [
     ("I_G ω₁ + ΣM Δt = I_G ω₂", "relation for impulse and angular momentum about one axis"),
     ("λ_1 Ω² cos θ − λ_3 ω_3 Ω + M g R = 0", "relation for steady precession of a heavy top"),
+    ("β₀² + β₁² + β₂² + β₃² = 1", "relation for the unit norm of a quaternion"),
+    ("dL/dt + omega x L = Gamma", "torque by the rate of the angular momentum in the body"),
+    ("β₀ = cos(Φ/2)", "scalar component of the quaternion of axis and angle"),
+    ("σ_1 = β₁/(1 + β₀)", "first component of the modified Rodrigues parameters of a quaternion"),
+    ("θ = 2 atan2(√(q₁² + q₂² + q₃²), q₀)", "angle of rotation of a unit quaternion"),
+    ("ψ̇ = I p/((I₀ − I) cos θ)", "rate of precession of a free symmetric body from its spin"),
     ("tan γ = (C/A) tan θ", "relation for the angles of momentum and angular velocity to the axis of a free symmetric body"),
     (r"\Omega_1^2 = \frac{(2EI_3-M^2)-I_2(I_3-I_2)\Omega_2^2}{I_1(I_3-I_1)}", "angular velocity of a free body of given energy"),
     (r"\omega_3^2 = \frac{4MglI_1}{I_3^2}", "angular velocity of the least spin of a sleeping top"),
@@ -269,3 +275,24 @@ def test_relations_and_formulas_that_books_name_are_recognised(claim, name):
 ])  # fmt: skip
 def test_wrong_relations_and_formulas_are_not_recognised(claim):
     assert symrot.check(claim).verdict != "recognised"
+
+
+@pytest.mark.parametrize("claim", [
+    "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "a = ω r", "I_G = I_O + m d²", "k_G² = k_O² + d²",
+    "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",
+    "λ² = (I_2 - I_1)(I_3 - I_2) ω²/(I_1 I_3)", "M = (C - A) ω² sin β cos β", "I_G = I_O - m d²",
+])  # fmt: skip
+def test_letters_that_say_something_else_are_neither_recognised_nor_accused(claim):
+    assert symrot.check(claim).verdict == "definition"
+
+
+@pytest.mark.parametrize(("claim", "name"), [
+    ("R_11 = 1 - 2(q_2² + q_3²)", "entry 11"), ("R_23 = 2(q_2 q_3 + q_0 q_1)", "entry 32"),
+    ("φ̇ = (L_z - L_3 cos θ)/(I_1 sin²θ)", "rate of precession"), ("I_O = I_G + m d²", "parallel axis"),
+    ("Ω = I_3 ω_3/I_1", "nutation"), ("H_O = r × m v + H_G", "angular momentum about a point"),
+    ("v′ = v + 2 r × (r × v + w v)", "rotated vector"), ("v' = q v q*", "rotated vector"),
+    (r"M_3 = \begin{pmatrix} \cos\theta & \sin\theta & 0 \\ -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{pmatrix}", "z axis"),
+])  # fmt: skip
+def test_letters_that_say_the_same_are_recognised(claim, name):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and name in verdict.recognised_as[0].name

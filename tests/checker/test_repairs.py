@@ -1,4 +1,4 @@
-"""A part of the campaign on diagnosis, and every code of a diagnosis for a formula that a book might print."""
+"""A part of the campaign that tests diagnoses, and for every code of a diagnosis a formula that a book might print."""
 
 from dataclasses import replace
 from random import Random
@@ -51,12 +51,12 @@ PRINTED = {  # code: what is printed, what would be right (None: the claim holds
     "sign_branch": ("sqrt(x**2) == x", None),
     "principal_value": ("asin(sin(x)) == x", None),
 }  # fmt: skip
-ELSEWHERE = {"none", "domain", "dimension"}
-"""No diagnosis, and those that come without an edit."""
+ELSEWHERE = {"none", "domain", "dimension", "exponent"}
+"""No diagnosis, those that come without an edit, and those of formulas that only name a quantity."""
 
 
 def same_text(first, second):
-    """Return whether two claims are equal up to the order of terms and scalar factors."""
+    """Return whether two claims are the same up to the order of terms and scalar factors."""
     sides = [
         [canonical(read_expression(side), lambda node: False) for side in claim.split(" == ")]
         for claim in (first, second)
@@ -90,7 +90,7 @@ def test_a_conditional_claim_is_not_repaired_by_adding_the_difference(claim):
 
 @pytest.fixture
 def statements(monkeypatch):
-    """Use only formulas with products; the steps of all derivations are left to the long campaign."""
+    """The formulas with products only; the steps of all derivations are left to the long campaign."""
     pool = tuple(claims_of_statements())
     monkeypatch.setattr(module, "catalogue_claims", lambda: pool)
     return pool
@@ -121,7 +121,7 @@ def test_every_kind_of_fault_has_places_in_the_catalogue_and_changes_the_claim(s
 
 
 def test_a_wrong_repair_is_caught(statements, monkeypatch):
-    """A repair that repeats the claim is neither proven nor different from it, and the campaign fails."""
+    """If a diagnosis offers the claim itself, this is not proven and is not the original, and the command fails."""
 
     def wrong(claim, decision):
         return symrot.check("x == y").diagnosis, (Repair(claim.text, "factor", 1.0),)

@@ -1,4 +1,4 @@
-"""Decimal numbers in claims: right if the value rounds to them; otherwise the correct digits are given."""
+"""Decimal numbers in claims: right if the value rounds to them, otherwise wrong, with the right digits."""
 
 import pytest
 

@@ -6,8 +6,8 @@ import symrot
 
 
 @pytest.mark.parametrize(("claim", "needs"), [
-    ("(x**2 - 1)/(x - 1) == x + 1", "the left side needs x - 1 != 0"), ("x == sqrt(x)**2", "the right side needs x >= 0"),
-    ("sin(theta) == sin(theta)**2/sin(theta)", "the right side needs sin(theta) != 0"), ("cos(acos(x)) == x", "the left side needs 1 - x**2 >= 0"),
+    ("(x**2 - 1)/(x - 1) == x + 1", "the left side needs x != 1"), ("x == sqrt(x)**2", "the right side needs x >= 0"),
+    ("sin(theta) == sin(theta)**2/sin(theta)", "the right side needs sin(theta) != 0"), ("cos(acos(x)) == x", "the left side needs -1 <= x <= 1"),
 ])  # fmt: skip
 def test_what_holds_only_where_it_is_defined(claim, needs):
     verdict = symrot.check(claim)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import symrot
+from symrot.textbook import errata
 
 FOLDER = Path(symrot.__file__).parent / "textbook"
 DOCUMENTS = {"chen": 60, "sahakian": 95, "brown": 150, "beer-johnston": 70}  # name -> the least number of claims
@@ -14,7 +15,7 @@ ALL = 400
 
 HEAD = {"schema", "document", "title", "kind", "lost", "note", "claim"}
 TEXTS = {"id", "where", "printed", "kind", "claim", "value", "printed_value", "against", "note"}
-LISTS = {"lost", "symbols", "functions", "given", "alternatives"}
+LISTS = {"lost", "symbols", "functions", "given", "alternatives", "editable"}
 REQUIRED = {"id", "where", "printed", "kind", "against"}
 KINDS = {"formula", "table", "number"}
 BUILT_IN = set(
@@ -25,7 +26,8 @@ BUILT_IN = set(
     )
 )
 TOKEN = re.compile(
-    r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|[-+*/(),\[\]]|\.T\b))", re.ASCII
+    r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|!=|>|[-+*/(),\[\]]|\.T\b))",
+    re.ASCII,
 )
 OPENING = {")": "(", "]": "["}
 
@@ -69,6 +71,8 @@ def formulas(claim):
 
 
 CLAIMS = [(document, claim) for document in DOCUMENTS for claim in load(document)["claim"]]
+
+PROPOSALS = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
 
 
 def each_claim(law):
@@ -131,8 +135,9 @@ def test_a_claim_is_an_equation_or_a_value_with_its_printed_digits(claim):
         assert claim["printed_value"].lstrip("-") in claim["printed"]
         assert not {"alternatives", "given"} & set(claim)
         assert "==" not in claim["value"]
-    for text in [claim.get("claim"), *claim.get("given", []), *claim.get("alternatives", [])]:
+    for text in [claim.get("claim"), *claim.get("alternatives", [])]:
         assert text is None or len(text.split("==")) == 2, text
+    assert all(len(re.split("==|!=|>", text)) == 2 for text in claim.get("given", []))
     assert all(len(pair) == 2 and "==" not in pair[1] for pair in claim.get("define", []))
 
 
@@ -148,6 +153,7 @@ def test_names_are_declared_once_and_none_hides_a_built_in(claim):
     assert len(declared) == len(set(declared))
     assert not set(declared) & BUILT_IN
     used = set().union(*(read_names(text) for _, text, _ in formulas(claim)))
+    used |= set().union(*(read_names(text) for text in PROPOSALS.get(claim["id"], {}).values()))
     assert set(declared) <= used
 
 
@@ -155,3 +161,17 @@ def test_names_are_declared_once_and_none_hides_a_built_in(claim):
 def test_the_reader_of_these_tests_refuses_what_is_not_the_claim_language(text):
     with pytest.raises(ValueError, match=r"position|bracket"):
         read_names(text)
+
+
+def test_a_template_has_holes_for_parts_of_its_claim_and_words_are_courteous():
+    claims = {claim["id"]: claim for _, claim in CLAIMS}
+    for erratum in errata():
+        assert not re.search(r"\b(wrong|mistake|blunder|careless|nonsense|of course)\b", erratum.why.lower()), (
+            erratum.title
+        )
+        assert erratum.formulas[0].template, erratum.title
+        for formula in erratum.formulas:
+            claim = claims[formula.claim]
+            parts = {"left", "right", "printed", *(name for name, _ in claim.get("define", []))}
+            assert set(re.findall(r"@(\w+)@", formula.template + formula.corrected)) <= parts
+            assert set(formula.letters) <= {*parts, *claim.get("symbols", []), *claim.get("functions", [])}

@@ -5,7 +5,7 @@ are true.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,29 +13,33 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
+from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
+from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
     has_natural_base,
-    imaginary_letter,
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation
+from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
 from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
-from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor
+from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
+from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of, read_context
 from symrot.checker.decide.decision import Equation
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError, complaint
+from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
 __all__ = [
+    "SIDES",
     "Claim",
     "Definitions",
     "Refusal",
@@ -50,6 +54,9 @@ __all__ = [
 ]  # fmt: skip
 
 
+SIDES = ("left", "right")
+
+
 @dataclass(frozen=True)
 class Definitions:
     """The symbols and definitions of a claim as SymPy values.
@@ -62,12 +69,15 @@ class Definitions:
         Names of functions of time.
     divisors, radicands : tuple
         Formulas that the texts of the definitions divide by, or take even roots of.
+    bases : tuple of Expr
+        Bases of powers whose exponents are not numbers.
     """
 
     values: Mapping[str, Any]
     functions: frozenset[str]
     divisors: tuple[Divisor, ...]
     radicands: tuple[Expr, ...]
+    bases: tuple[Expr, ...]
 
 
 @dataclass(frozen=True)
@@ -89,7 +99,7 @@ class Claim:
     printed : str
         The decimal number that a document prints for ``value``.
     alternatives : tuple of Relation
-        Other readings of a document that lost characters.
+        Other equations that the text may stand for, if the document lost characters.
     implied : bool
         Whether undeclared names become real symbols and functions of time.
     sources : mapping
@@ -98,6 +108,13 @@ class Claim:
         Units by name.
     notes : tuple of str
         Sentences about how the text is read.
+    editable : tuple of str
+        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
+        the claim is measured against.
+    has_parts : bool
+        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
+    context : Context
+        What is said in words about the names of the claim, and about the body.
     """
 
     id: str = ""
@@ -114,6 +131,44 @@ class Claim:
     sources: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    editable: tuple[str, ...] = SIDES
+    has_parts: bool = False
+    context: Context = NO_CONTEXT
+
+    @property
+    def without_context(self) -> "Claim":
+        """The claim without its context, the words about its names and its body."""
+        return replace(self, context=NO_CONTEXT)
+
+    @property
+    def defining(self) -> dict[str, Node]:
+        """The names that hypotheses such as ``c1 == cos(alpha)`` define by a scalar formula, each with its formula."""
+        definitions: dict[str, Node] = {}
+        for sign, left, right in self.hypotheses:
+            inside = {str(node.value) for _, node in walk(right) if node.kind in ("name", "call")}
+            if sign == "==" and left.kind == "name" and left.value not in inside and shape_of(right, {}) is None:
+                definitions.setdefault(str(left.value), right)
+        return definitions
+
+    def with_definitions(self, value: Any) -> Any:
+        """Return a SymPy value in which each name of :attr:`defining` is replaced by its formula."""
+        interpreter = self.interpreter()
+        for name, tree in self.defining.items():
+            value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
+        return value
+
+    @property
+    def expanded(self) -> "Claim":
+        """The claim in which formulas replace the names of :attr:`defining`, without the hypotheses for these names."""
+        definitions = self.defining
+        if self.relation is None or not definitions:
+            return self
+        rest = tuple(
+            hypothesis for hypothesis in self.hypotheses if definitions.get(str(hypothesis[1].value)) != hypothesis[2]
+        )
+        sign, left, right = self.relation
+        relation = sign, _substituted(left, definitions), _substituted(right, definitions)
+        return replace(self, relation=relation, hypotheses=rest, alternatives=())
 
     @property
     def text(self) -> str:
@@ -129,16 +184,26 @@ class Claim:
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
         """Return the claim with another equation.
 
-        ``changes`` are new values of other fields; definitions must not depend on these.
+        ``changes`` are new values of other fields, on which the definitions must not depend.
         """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
             other.__dict__["definitions"] = self.definitions
         return other
 
+    def with_parts(self, parts: Mapping[str, Node]) -> "Claim":
+        """Return the claim with new trees for some of its parts: ``"left"``, ``"right"`` or names of definitions."""
+        assert self.relation is not None
+        sign, left, right = self.relation
+        relation = (sign, parts.get("left", left), parts.get("right", right))
+        if not parts.keys() - {*SIDES}:
+            return self.with_relation(relation)
+        define = tuple((name, parts.get(name, tree)) for name, tree in self.define)
+        return replace(self, relation=relation, define=define)
+
     @cached_property
     def definitions(self) -> Definitions:
-        """The symbols, positive where a hypothesis says so, and the definitions.
+        """The symbols and definitions as SymPy values; a symbol is positive if a hypothesis says so.
 
         Raises
         ------
@@ -161,15 +226,16 @@ class Claim:
             source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
             values[name] = interpreter.read(node, source, place)
         return Definitions(
-            values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands)
-        )
+            values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands),
+            tuple(interpreter.bases),
+        )  # fmt: skip
 
     def interpreter(self) -> Interpreter:
         """Return a new interpreter, which turns further syntax trees that use the names of the claim into SymPy."""
         known = self.definitions
         return Interpreter(
             values=dict(known.values), functions=set(known.functions), implied=self.implied,
-            divisors=list(known.divisors), radicands=list(known.radicands),
+            divisors=list(known.divisors), radicands=list(known.radicands), bases=list(known.bases),
         )  # fmt: skip
 
     @cached_property
@@ -198,7 +264,16 @@ class Claim:
         rhs = lhs if right is left else interpreter.read(right, source, self.label("claim"))
         divisors = tuple(dict.fromkeys(divisor.value for divisor in interpreter.divisors))
         radicands = tuple(dict.fromkeys(interpreter.radicands))
-        return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)
+        same = text(left) == text(right)  # equal sides are equal for all bases
+        bases = () if same else interpreter.assumed_bases
+        return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands, bases)
+
+
+def _substituted(tree: Node, definitions: Mapping[str, Node]) -> Node:
+    """Return a tree in which names are replaced by their formulas in ``definitions``."""
+    if tree.kind == "name" and tree.value in definitions:
+        return definitions[tree.value]
+    return replace(tree, args=tuple(_substituted(child, definitions) for child in tree.args))
 
 
 def relation_text(relation: Relation) -> str:
@@ -229,9 +304,12 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     return names
 
 
-def _hypothesis(source: str, where: str, declared: Declared | None = None) -> Relation:
+def _hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
+    """Return a hypothesis, read from text; ``words`` are names of the claim, never split into products of letters."""
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
+    elif declared is None:
+        relation = read_relation(source, where, Declared(words) if words else None, rates=True)
     else:
         relation = read_relation(source, where, declared)
     if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
@@ -268,27 +346,39 @@ def claim_of_relation(
         For a relation that is no equation, and for units of names that the claim does not have.
     """
     if relation[0] != "==":
-        raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    matrices = [matrix for matrix in map(_matrix_given, assume) if matrix is not None]
-    assume = [text for text in assume if _matrix_given(text) is None]
-    define = [*_with_entries(matrices, relation), *define]
-    hypotheses = tuple(_hypothesis(text, "given") for text in assume)
-    relation, vectors, with_units = _with_vectors(relation, list(vectors), define)
+        instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
+        raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
+    words = {name for name in names if len(name) > 1 and name.isalpha()}
+    matrices = {source: _matrix_given(source, words) for source in assume}
+    assume = [source for source in assume if matrices[source] is None]
+    define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
+    hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
+    if (unit := imaginary_unit([*relation[1:], *context])) is not None:
+        relation = with_parts(relation, str(unit.value), source)
+        notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
+    vectors = [vector for vector in vectors if vector.name not in bold]
+    define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
+    notes = [*notes, *map(_on_matrix, bold)]
+    arrays = _with_arrays(relation, vectors, define)
+    relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
+    vectors = [*vectors, *map(Vector, arrays.vectors)]
+    vectors = [vector for vector in vectors if vector.name not in dict(define)]
+    relation, vectors, with_units = _with_vectors(relation, vectors, define)
+    relation, lengths = with_lengths(relation, _shapes(vectors, define))
+    notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
+    moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}
+    relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
     notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
-    letter = imaginary_letter(everything)
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
-        if letter is not None:
-            expected = f"real numbers (write cos(x) and sin(x) for the parts of exp({letter.value}*x))"
-            raise complaint(source, "", letter.span[0], expected)
         notes.append("e is read as the base of the exponential function")
         relation = _with_natural_base(relation)
         hypotheses = tuple(map(_with_natural_base, hypotheses))
         define = [(name, with_natural_base(tree)) for name, tree in define]
-    elif letter is not None:
-        notes.append(f"{letter.value} is read as a real symbol, not as the imaginary unit")
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
     sources |= {f"define.{n}": source for n in range(len(define))}
     trees = [
@@ -313,19 +403,27 @@ def claim_of_relation(
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
+        has_parts=unit is not None,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
 
-def _matrix_given(source: str) -> tuple[str, Node] | None:
-    """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
-    sign, left, right = _hypothesis(source, "given")
-    is_definition = sign == "==" and left.kind == "name" and (shape_of(right, {}) or (0, 0))[1] > 1
+def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
+    """Return hypotheses in which a name with a rate in one of them is a function of time in all of them."""
+    nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
+    rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
+    return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
+
+
+def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
+    """Return name and formula of a hypothesis that defines a matrix, ``R == R_z(psi)*R_y(theta)``; otherwise None."""
+    sign, left, right = _hypothesis(source, "given", words=words)
+    is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield the matrices that hypotheses define, and their entries that a claim names: R_31, R31 and r_31 of R."""
+    """Yield definitions: of matrices in hypotheses, and of the entries of R that a claim names R_31, R31 or r_31."""
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
@@ -338,15 +436,13 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with its unit matrices, its vectors, and whether it has unit matrices.
+    """Return a relation whose unit matrices are written ``eye(n)``, its vectors, and whether it has unit matrices.
 
-    A name that is added to vectors is a vector too; a name of an inertia, added to matrices, is a tensor.
+    A name that is added to a vector is a vector too. The name of an inertia, added to a matrix, is a tensor.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
-    shapes: dict[str, Shape] = {}
-    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
-        shapes[name] = shape_of(tree, shapes)
+    shapes = _shapes(vectors, define)
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape
@@ -356,6 +452,47 @@ def _with_vectors(
         vectors = [*vectors, *map(Vector, new)]
         shapes |= new
     return with_units, vectors, with_units != relation
+
+
+def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> dict[str, Shape]:
+    """Return the shapes of vectors and of defined names."""
+    shapes: dict[str, Shape] = {}
+    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
+        shapes[name] = shape_of(tree, shapes)
+    return shapes
+
+
+def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
+    """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
+    known = {name for name, _ in define}
+    names = {vector.name for vector in vectors}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
+    known |= names | {name for name, _ in arrays.definitions}
+    matrices = used_matrices(arrays.relation[1:], known)
+    columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
+    return replace(
+        arrays,
+        definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
+        relation=_with_scalar_products(arrays.relation, columns),
+        vectors=(*arrays.vectors, *columns),
+        notes=(
+            *arrays.notes,
+            *map(_on_matrix, matrices),
+        ),
+    )
+
+
+def _on_matrix(name: str) -> str:
+    """Return the note on a name that is read as a matrix."""
+    return (
+        f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
+        f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+    )
+
+
+def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
+    sign, left, right = relation
+    return sign, with_scalar_products(left, names), with_scalar_products(right, names)
 
 
 def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
@@ -382,7 +519,7 @@ def _with_natural_base(relation: Relation) -> Relation:
 
 
 def _with_rotated_axes(relation: Relation) -> Relation:
-    """Return a relation in which ``R_x(a)`` is R_x(-a): in some books it rotates the axes, not the vectors."""
+    """Return a relation with R_x(-a) in place of ``R_x(a)``, which in some books rotates the axes, not the vectors."""
 
     def turned(node: Node) -> Node:
         args = tuple(map(turned, node.args))
@@ -396,9 +533,12 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 # -- TOML -------------------------------------------------------------------------------------------------------------
 
-TEXT_KEYS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
-LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost")
-OTHER_KEYS = ("define", "units")
+TEXT_KEYS = (
+    "id", "body", "frame", "sequence", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value",
+    "against",
+)  # fmt: skip
+LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
+OTHER_KEYS = ("where", "define", "units")
 """The keys of a claim, by the type of their value."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
@@ -469,7 +609,8 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
             name, where, excerpt = (str(entry.get(key, other))[:80] for key, other in (
                 ("id", f"claim-{number}"), ("where", ""), ("claim", entry.get("latex", "")),
             ))  # fmt: skip
-            entries.append(Refusal(name, where, excerpt, str(reason)))
+            place = where if isinstance(entry.get("where", ""), str) else ""
+            entries.append(Refusal(name, place, excerpt, str(reason)))
     return entries
 
 
@@ -498,9 +639,14 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     own = Declared(known - {*functions}, functions)
     hypotheses = tuple(_hypothesis(text, f"{place}: given", own) for text in entry.get("given", ()))
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
+    where = entry.get("where", "")
+    meanings = [] if isinstance(where, str) else where
+    body, frame, sequence = (str(entry.get(key, "")) for key in ("body", "frame", "sequence"))
+    context = read_context(meanings, body, frame, sequence, label=place)
+    units = check_units(entry.get("units", {}), known, place)
     claim = Claim(
-        name, entry.get("where", ""), symbols, functions, tuple(define), hypotheses, sources=sources,
-        units=check_units(entry.get("units", {}), known, place),
+        name, "" if meanings else where, symbols, functions, tuple(define), hypotheses, sources=sources,
+        units={**context.units({*symbols}, units), **units}, editable=_editable(entry, define, place), context=context,
     )  # fmt: skip
     others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
@@ -529,6 +675,10 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         else:
             readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
+    try:
+        context.check_names({name for side in relation[1:] for name in quantities_of(side)})
+    except InputError as reason:
+        raise InputError(f"{place}: {reason}") from None
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
 
 
@@ -538,11 +688,19 @@ def is_latex(source: str) -> bool:
 
 
 def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names f that occur as ``f(t)`` in hypotheses."""
+    """Return the names f that occur in hypotheses as ``f(t)`` or with a time derivative."""
+    sides = [
+        side
+        for source in assume
+        for side in (
+            read_latex(source, "given").relation[1:]
+            if is_latex(source)
+            else [side for chain in readings_of(source, "given")[0].lines for side in chain.sides]
+        )
+    ]
     return {
-        node.value
-        for relation in (_hypothesis(text, "given") for text in assume)
-        for side in relation[1:]
+        str(node.value)
+        for side in sides
         for _, node in walk(side)
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
     }
@@ -560,7 +718,7 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names of a claim for the reader of LaTeX, which wants matrices and columns in sets of their own."""
+    """Return the names of a claim for the LaTeX reader, with matrices and columns in separate sets."""
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}
@@ -585,6 +743,9 @@ def _check_key(key: str, value: Any, place: str) -> None:
         fits = isinstance(value, list) and all(
             isinstance(pair, list) and len(pair) == 2 and all(isinstance(v, str) for v in pair) for pair in value
         )
+    elif key == "where":
+        expected = "a text, the place in a document, or a list of texts 'NAME = words'"
+        fits = isinstance(value, str) or (isinstance(value, list) and all(isinstance(v, str) for v in value))
     elif key == "units":
         expected = "a table of units by symbol"
         fits = isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
@@ -603,6 +764,16 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
         twice = next(name for number, name in enumerate(names) if name in names[:number])
         raise InputError(f"{place}: {key}: expected every name once, got {twice!r} twice")
     return tuple(names)
+
+
+def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
+    """Return the parts of a claim that repairs may change: those that its entry lists, by default both sides."""
+    parts = tuple(entry.get("editable", SIDES))
+    known = (*SIDES, *(name for name, _ in define))
+    for part in parts:
+        if part not in known:
+            raise InputError(f"{place}: editable: expected left, right or the name of a definition, got {part[:40]!r}")
+    return parts
 
 
 def _check_name(name: str, key: str, place: str) -> None:

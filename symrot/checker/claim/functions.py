@@ -3,6 +3,7 @@
 Every divisor and every formula under a root is recorded before SymPy can cancel it.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -40,7 +41,7 @@ ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
     """Return the function that evaluates a call such as ``tan(x)``.
 
-    If the value has a divisor, ``below`` gives it: cos(x).
+    If the value has a denominator, ``below`` returns it: cos(x) for tan(x).
     """
 
     def call(scope: Scope, node: Node) -> Expr:
@@ -61,6 +62,14 @@ def _sqrt(scope: Scope, node: Node) -> Expr:
     value = scope.argument(node.args[0], "under the root")
     scope.take_root(value, node.args[0])
     return sympy.sqrt(value)
+
+
+def _abs(scope: Scope, node: Node) -> Expr:
+    """Return the absolute value of a scalar, or the length of a column."""
+    value = scope.evaluate(node.args[0])
+    if is_matrix(value) and value.cols == 1:
+        return sympy.sqrt(value.dot(value))
+    return _of_scalar(sympy.Abs)(scope, node)
 
 
 def _atan2(scope: Scope, node: Node) -> Expr:
@@ -202,17 +211,35 @@ def _diag(scope: Scope, node: Node) -> ImmutableMatrix:
 
 def _matrix(scope: Scope, node: Node) -> ImmutableMatrix:
     rows = scope.evaluate(node.args[0])
-    if is_matrix(rows):
-        return rows
+    return rows if is_matrix(rows) else _of_blocks(scope, node, rows)
+
+
+def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
+    """Return a matrix from rows of scalars, or of matrices that fit together; a zero may stand for a block of zeros."""
     rows = rows if isinstance(rows, tuple) else ()
     rows = tuple(row if isinstance(row, tuple) else (row,) for row in rows)
-    lengths = {len(row) for row in rows}
     cells = [cell for row in rows for cell in row]
-    if len(lengths) != 1 or any(is_matrix(cell) or isinstance(cell, tuple) for cell in cells):
+    if len({len(row) for row in rows}) != 1 or any(isinstance(cell, tuple) for cell in cells):
         raise scope.fail(node, "rows of scalars of equal length, Matrix([[a, b], [c, d]]),")
-    if max(len(rows), *lengths) > LARGEST_MATRIX:
+    heights = [max(cell.rows if is_matrix(cell) else 1 for cell in row) for row in rows]
+    widths = [max(cell.cols if is_matrix(cell) else 1 for cell in column) for column in zip(*rows, strict=True)]
+    if max(sum(heights), sum(widths)) > LARGEST_MATRIX:
         raise scope.fail(node, f"a matrix of at most {LARGEST_MATRIX} x {LARGEST_MATRIX}")
-    return ImmutableMatrix(rows)
+    lines = []
+    for row, height in zip(rows, heights, strict=True):
+        blocks = [_block(cell, height, width) for cell, width in zip(row, widths, strict=True)]
+        if None in blocks:
+            raise scope.fail(node, "blocks that fit together, or rows of scalars of equal length,")
+        lines.append(ImmutableMatrix.hstack(*blocks))
+    return ImmutableMatrix.vstack(*lines)
+
+
+def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
+    """Return a cell as a matrix of a given size: a zero may have any size, any other cell only its own."""
+    if cell == 0 and not is_matrix(cell):
+        return ImmutableMatrix.zeros(height, width)
+    matrix = cell if is_matrix(cell) else ImmutableMatrix([[cell]])
+    return matrix if matrix.shape == (height, width) else None
 
 
 def _hstack(scope: Scope, node: Node) -> ImmutableMatrix:
@@ -222,7 +249,26 @@ def _hstack(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
-    return quaternion_product(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
+    return quaternion_product(*(_quaternion(scope, argument) for argument in node.args))
+
+
+def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
+    """Return the four components of a quaternion, scalar first; a vector gets the scalar component zero."""
+    value = scope.evaluate(node)
+    if isinstance(value, tuple):
+        value = _of_blocks(scope, node, value)
+    if is_matrix(value) and value.shape == (3, 1):
+        return ImmutableMatrix([0, *value])
+    return scope.matrix(node, "as a quaternion", (4, 1)) if getattr(value, "shape", ()) != (4, 1) else value
+
+
+def _conjugate(scope: Scope, node: Node) -> ImmutableMatrix:
+    scalar, *vector = _quaternion(scope, node.args[0])
+    return ImmutableMatrix([scalar, *(-component for component in vector)])
+
+
+def _vector_part(scope: Scope, node: Node) -> ImmutableMatrix:
+    return ImmutableMatrix(_quaternion(scope, node.args[0])[1:, :])
 
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
@@ -253,7 +299,8 @@ def _is_rate(value: Expr) -> bool:
     return bool(value.is_Derivative) and isinstance(value.expr, AppliedUndef)
 
 
-def _integrate(scope: Scope, node: Node) -> Expr:
+def _integrate(scope: Scope, node: Node) -> Any:
+    """Return an integral; a vector or matrix is integrated entry by entry."""
     integrand, *ranges = node.args
     limits = []
     for place in ranges:
@@ -265,18 +312,48 @@ def _integrate(scope: Scope, node: Node) -> Expr:
             raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
-    total = scope.scalar(integrand, "to integrate")
+    total = scope.evaluate(integrand)
+    scope.shape(total, integrand)
     needs = [d.value for d in scope.divisors[divisors_before:] if not d.value.is_nonzero]
     needs += [radicand for radicand in scope.radicands[radicands_before:] if not radicand.is_nonnegative]
     if any(need.has(variable) for need in needs for variable, _, _ in limits):
         raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
-        try:
-            total, divisors = definite_integral(total, variable, lower, upper)
-        except InputError as reason:
-            raise scope.fail(place, f"an integral that symrot can compute ({reason})") from None
-        scope.divisors.extend(Divisor(value, place) for value in divisors)
+        entries = []
+        for entry in total if is_matrix(total) else [total]:
+            try:
+                value, divisors = definite_integral(entry, variable, lower, upper)
+            except InputError as reason:
+                raise scope.fail(place, f"an integral that symrot can compute ({reason})") from None
+            scope.divisors.extend(Divisor(value, place) for value in divisors)
+            entries.append(value)
+        total = ImmutableMatrix(*total.shape, entries) if is_matrix(total) else entries[0]
     return total
+
+
+COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
+"""Names of the coordinates of a point of a body."""
+
+
+def _integral_over_body(scope: Scope, node: Node) -> Any:
+    """Return an integral over a body of unknown shape: the integral of each product of coordinates is a new symbol."""
+    value = scope.evaluate(node.args[0])
+    scope.shape(value, node.args[0])
+    if is_matrix(value):
+        return value.applyfunc(lambda entry: _sum_of_moments(scope, node, entry))
+    return _sum_of_moments(scope, node, value)
+
+
+def _sum_of_moments(scope: Scope, node: Node, value: Expr) -> Expr:
+    coordinates = [symbol for symbol in sorted(value.free_symbols, key=str) if COORDINATES.fullmatch(str(symbol))]
+    if not value.is_polynomial(*coordinates):
+        raise scope.fail(node.args[0], "a polynomial in the coordinates x, y, z under an integral over a body")
+    terms = sympy.Poly(value, *coordinates).terms() if coordinates else [((), value)]
+    total = []
+    for powers, factor in terms:
+        name = "".join(str(symbol) * power for symbol, power in zip(coordinates, powers, strict=True))
+        total.append(factor * sympy.Symbol(f"integral_{name or 1}", real=True))
+    return sympy.Add(*total)
 
 
 BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
@@ -296,9 +373,10 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "sinh": (1, 1, _of_scalar(sympy.sinh)),
     "cosh": (1, 1, _of_scalar(sympy.cosh)),
     "tanh": (1, 1, _of_scalar(sympy.tanh)),
-    "abs": (1, 1, _of_scalar(sympy.Abs)),
+    "abs": (1, 1, _abs),
     "diff": (2, 9, _diff),
     "integrate": (2, 9, _integrate),
+    "integral_over_body": (1, 1, _integral_over_body),
     "Matrix": (1, 1, _matrix),
     "eye": (1, 1, _eye),
     "diag": (1, LARGEST_MATRIX, _diag),
@@ -314,6 +392,8 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "cross": (2, 2, _cross),
     "dot": (2, 2, _dot),
     "qmul": (2, 9, _qmul),
+    "conjugate": (1, 1, _conjugate),
+    "vector_part": (1, 1, _vector_part),
     "dcm_of": (1, 4, _dcm_of),
 }
 """Name -> (fewest arguments, most arguments, evaluation)."""

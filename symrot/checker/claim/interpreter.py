@@ -16,6 +16,9 @@ from symrot.checker.decide.unordered import is_unordered
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
 LARGEST_EXPONENT = 64
+"""The largest exponent of a matrix or under a root."""
+
+LARGEST_WHOLE_EXPONENT = 1_000_000
 LARGEST_ROOT = 12
 MOST_BITS = 20_000
 
@@ -26,7 +29,7 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
     "zoo", "infinity", "Infinity",
 )  # fmt: skip
-"""Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
+"""Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
 
 INSTEAD = {"I": "I_1", "E": "E_k"}
 """Such a name -> a name for the quantity that books on mechanics call by it."""
@@ -142,8 +145,9 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         return _power_of_positive(interpreter, node, base, exponent)
     if not exponent.is_Rational:
         raise interpreter.fail(node.args[1], "a number as an exponent")
-    if abs(exponent.p) > LARGEST_EXPONENT or exponent.q > LARGEST_ROOT:
-        raise interpreter.fail(node.args[1], f"an exponent up to {LARGEST_EXPONENT} (roots up to the {LARGEST_ROOT}th)")
+    most = LARGEST_WHOLE_EXPONENT if exponent.q == 1 and not is_matrix(base) else LARGEST_EXPONENT
+    if abs(exponent.p) > most or exponent.q > LARGEST_ROOT:
+        raise interpreter.fail(node.args[1], f"an exponent up to {most} (roots up to the {LARGEST_ROOT}th)")
     if is_matrix(base):
         if base.rows != base.cols or exponent.q != 1:
             raise interpreter.fail(node, "a square matrix to a whole power")
@@ -158,7 +162,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise interpreter.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q > 1:  # of odd index too: the principal value of a negative number is not real
+    if exponent.q > 1:  # roots of odd index too: the principal value of a negative number is not real
         interpreter.within_nesting(base, node.args[0])
         interpreter.take_root(base, node.args[0])
     return base**exponent
@@ -167,13 +171,14 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
 def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
     """Return exp(exponent*log(base)), the power of a positive base, for an exponent that is not a number."""
     interpreter.shape(base, node.args[0])
-    if any(not (part.is_Pow and part.exp.is_Integer) for part in exponent.atoms(sympy.Pow, sympy.Function)):
-        raise interpreter.fail(node.args[1], "a number as an exponent, or a formula without functions and roots,")
+    interpreter.within_nesting(exponent, node.args[1])
     if base.is_nonpositive:
         raise interpreter.fail(node.args[0], "a positive number below an exponent that is no number")
     interpreter.within_nesting(base, node.args[0])
     interpreter.divide_by(base, node.args[0])
     interpreter.take_root(base, node.args[0])
+    if exponent.free_symbols:  # for a whole exponent the base might be negative too
+        interpreter.bases.append(base)
     return sympy.exp(exponent * sympy.log(base))
 
 
@@ -214,7 +219,7 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
         known = (
             f"did you mean {close[0]}?"
             if close
-            else f"for a product write {name}*(..); built in: {', '.join(BUILT_IN)}"
+            else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
         expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
         raise interpreter.fail(node, expected)

@@ -1,11 +1,13 @@
 """The claims of a text with several lines, or with a chain of equals signs such as ``a = b = c``."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
 from symrot.checker.claim.reader import Reading
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
+from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
@@ -15,11 +17,12 @@ MOST_EQUATIONS = 30
 
 
 def claims_of_reading(
-    reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None
-) -> list[list[Claim]]:
-    """Return the claims of a reading (an interpretation of a text): one for each line, and each link of ``a = b = c``.
+    reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
+    stated: Context = NO_CONTEXT,
+) -> list[list[Claim]]:  # fmt: skip
+    """Return, for each line of a reading (one interpretation of a text), a list of claims: one per equals sign.
 
-    A line that only gives a name to a formula is a definition for the lines after it.
+    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context.
     """
     define: list[tuple[str, Node]] = []
     lines = []
@@ -27,6 +30,8 @@ def claims_of_reading(
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
     names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
     check_units(dict(units or {}), names, "claim")
+    units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
+    stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
     for chain in reading.lines:
         links = chain.links
@@ -39,18 +44,19 @@ def claims_of_reading(
             in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
             own = {name: unit for name, unit in (units or {}).items() if name in in_link}
             vectors = [vector for vector in used_vectors(link[1:], reading.vectors) if vector.name not in dict(define)]
-            claims.append(claim_of_relation(link, source, assume, own, known, reading.notes, context, vectors))
+            claim = claim_of_relation(link, source, assume, own, known, reading.notes, context, vectors)
+            claims.append(replace(claim, context=stated))
         lines.append(claims)
         first = chain.sides[0]
         reserved = ("pi", "t", *(name for name, _ in define))
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
-        if is_name and first not in [node for _, node in walk(chain.sides[1])]:
+        if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
     return lines
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
-    """Return the definitions of the names in ``used``, and the definitions that these depend on, in order."""
+    """Return, in order, the definitions on which the names ``used`` depend, directly or through other definitions."""
     needed: list[tuple[str, Node]] = []
     names = set(used)
     for name, tree in reversed(define):

@@ -3,7 +3,7 @@
 No such claim is an identity: whether it holds depends on what its letters mean.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from functools import partial, reduce
 from typing import NamedTuple
@@ -16,9 +16,12 @@ from symrot.errors import InputError
 from symrot.exact import normal_form
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["NamedFormula", "named_formula", "related_formula"]
+__all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
+MARKED = ("_prime", "_dot", "_star")
+"""Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
+
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
 """Function of a quantity -> the function that solves for the quantity."""
 
@@ -27,8 +30,9 @@ class NamedFormula(NamedTuple):
     """A quantity without a definition, and the formula that a claim gives for it.
 
     ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
-    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula of the other side into the formula
-    of the quantity: k = sqrt(I/m) for k^2 = I/m. It is None if the quantity itself is ``side``.
+    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula for ``side`` into a formula for
+    the quantity: I/m into sqrt(I/m) for k^2 = I/m. It is None if the claim is not solved for one name; then ``name`` is
+    the text of ``side``.
     """
 
     name: str
@@ -50,11 +54,56 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     for side, formula in ((left, right), (right, left)):
         inner = side.args[0] if _is_rate(side) else side
         is_wrong_shape = inner.value in defined and formula.kind == "number" and formula.value
-        if _is_name(inner) and inner.value not in known and not _is_name(formula) and not is_wrong_shape:
+        is_bare = _is_name(formula) and not str(inner.value).endswith(MARKED)
+        if _is_name(inner) and inner.value not in known and not is_bare and not is_wrong_shape:
             elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
             if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
                 return NamedFormula(str(inner.value), side, formula, _is_rate(side))
     return None
+
+
+def open_formula(claim: Claim) -> NamedFormula | None:
+    """Return the two sides of a claim about the derivative of a name that nothing defines; None for other claims.
+
+    ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
+    """
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    if not claim.implied or claim.hypotheses:
+        return None
+    known = {"pi", "t", *dict(claim.define)}
+    for side in (left, right):
+        for _, node in walk(side):
+            if node.kind == "call" and node.value == "diff":
+                names, others = ({*_letters_of(part)} for part in (node.args[:1], node.args[1:]))
+                if names and not names & {*known, *others} and not _depends_on_time(node):
+                    return NamedFormula(text(left), left, right, solve=None)
+    return None
+
+
+def _is_open_rate(side: Node, other: Node) -> bool:
+    """Return whether a side has the time derivative of a formula, and the other side is 0 or has further letters.
+
+    An example is ``(I w^2/2)' = I w alpha``, with the further letter alpha.
+    """
+    derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
+    has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
+    others = {*_letters_of([other])}
+    return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
+
+
+def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
+    """Yield the names of the symbols and of the functions of time in several trees."""
+    for tree in trees:
+        yield from (str(node.value) for _, node in walk(tree) if node.kind == "name" or _is_name(node))
+
+
+def _depends_on_time(derivative: Node) -> bool:
+    """Return whether a derivative is one by time, of a formula that contains a function of time."""
+    inner, *variables = derivative.args
+    return any(v.value == "t" for v in variables) and any(
+        node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
+    )
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
@@ -63,14 +112,20 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
     letters = [_quantities(side) for side in (left, right)]
-    if _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses)):
+    generic = {name for name, tree in claim.define if is_components(name, tree)}
+    is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
+    is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
+    if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
+        return NamedFormula(text(left), left, right, solve=None)
+    defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
+    if not claim.hypotheses and not defined and (_is_open_rate(left, right) or _is_open_rate(right, left)):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
     apart = all(letters) and not letters[0] & letters[1] and _says_something(claim, left, right)
-    if is_matrix(claim.equation.left) or is_matrix(claim.equation.right):
+    if any(is_matrix(side) and side.shape != (1, 1) for side in (claim.equation.left, claim.equation.right)):
         if (solved := _solved_for_vector(claim, left, right)) is not None:
             return solved
         if _equation_of_motion(left, right) is not None:
@@ -87,7 +142,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
-    is_whole = (left, right) == claim.relation[1:]  # not without common factors
+    is_whole = (left, right) == claim.relation[1:]  # no common factor was left out
     is_open = is_whole and _is_constraint(left, right, letters)
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
 
@@ -119,7 +174,7 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether a sum with several letters outside of functions is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
+    """Return whether an equation says that a sum with several letters is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
     if polynomial.kind != "sum" or constant.kind != "number":
         return False
@@ -129,9 +184,9 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
-    """Return whether a single product of vectors, or a length, is a number: ``a . b = 0`` says that they are normal.
+    """Return whether an equation says that a product of two vectors, or a length, is a number: ``a . b = 0``.
 
-    The length of a unit vector (``unit``) is not open.
+    If ``unit``, vectors have length one: then an equation about a length is no condition.
     """
     for side, other in ((left, right), (right, left)):
         product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
@@ -141,14 +196,48 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
     return False
 
 
+def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
+    """Return whether an equation says what kind of matrix its only name is: ``R.T*R == eye(3)`` or ``det(R) == 1``."""
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    names = {str(node.value) for node in nodes if node.kind == "name"}
+    kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
+    of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
+    of_value = kinds <= {"name", "number", "neg", "det", "trace"}
+    return len(names) == 1 and names <= {*generic} and (of_product or of_value)
+
+
+def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
+    """Return whether the only scalar in a relation of vectors is one angle: ``a . b = |a| |b| cos(theta)``."""
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
+    angles = [
+        node for node in nodes if node.kind == "call" and node.value in ("sin", "cos") and node.args[0] in scalars
+    ]
+    vectors = {str(node.value) for node in nodes if node.kind == "name"} & {*generic}
+    return len(scalars) == len(angles) == 1 and len(vectors) > 1
+
+
+def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
+    """Return whether a side differentiates a name without a definition by a quantity other than time."""
+    for side in (left, right):
+        for _, node in walk(side):
+            if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
+                name, *variables = node.args
+                if name.value not in known and name not in variables and any(v.value != "t" for v in variables):
+                    return True
+    return False
+
+
 def _is_list_of_names(tree: Node) -> bool:
     """Return whether a tree is a vector or matrix of names and rates alone."""
     is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
+    if tree.kind == "list" and len(tree.args) == 2 and tree.args[0] == number(0):
+        return _is_name(tree.args[1])  # the quaternion (0, v)
     return is_list and all(_is_name(part) or _is_rate(part) or _is_list_of_names(part) for part in tree.args)
 
 
 def _factors(tree: Node) -> list[Node]:
-    """Return the factors of all terms of a sum, without powers and signs."""
+    """Return the factors of all terms of a sum, without exponents and signs."""
     if tree.kind in ("sum", "product", "neg"):
         return [factor for part in tree.args for factor in _factors(part)]
     return _factors(tree.args[0]) if tree.kind == "power" else [tree]
@@ -157,7 +246,7 @@ def _factors(tree: Node) -> list[Node]:
 def _known(claim: Claim) -> set[str]:
     """Return the names that need no formula: pi, the time t, and the names that the claim defines.
 
-    A vector that only has components of its own name is not among them.
+    A vector whose definition only names its components is not among them.
     """
     return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
@@ -182,7 +271,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the quantity that a side contains, multiplied by constants only, and how to solve for it; or None."""
+    """Return the quantity of which a side is a function, such as k in 2*k^2, and how to solve for it; or None."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":

@@ -1,20 +1,25 @@
 """Formulas written in the notation that the user typed: SymPy's text, or plain text with ``^``, ``=`` and primes."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Protocol
 
-from symrot.checker.claim.reader import Reading, Relation, read_relation
+from symrot.checker.claim.reader import Reading, Relation, read_expression, read_relation
 from symrot.checker.claim.tree import Node, text
 from symrot.errors import InputError
 
-__all__ = ["Notation", "TypedNotation", "notation_of"]
+__all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
+
+
+SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
+"""A sign or word between the formulas of a condition."""
 
 
 class Notation(Protocol):
-    """A way to write formulas: the one that a user chose."""
+    """The notation of the user's text, in which answers are written."""
 
     def formula(self, node: Node) -> str:
         """Return the text of a formula."""
@@ -24,6 +29,9 @@ class Notation(Protocol):
 
     def rewritten(self, source: str) -> str:
         """Return the text of an equation that is given as SymPy's text; words after it stay unchanged."""
+
+    def condition(self, source: str) -> str:
+        """Return the text of a condition, such as ``0 <= x <= pi``, that is given as SymPy's text."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +43,7 @@ class TypedNotation:
     plain : bool
         Whether powers are ``^`` and equations ``=``; if not, formulas are SymPy's text.
     spelling : mapping
-        Name here -> name as it is typed.
+        Name in the tree -> name as it was typed.
     timed : frozenset of str
         Functions of time that are typed without ``(t)``.
     """
@@ -96,6 +104,24 @@ class TypedNotation:
         except InputError:
             return source
 
+    def condition(self, source: str) -> str:
+        """Return a condition, given as SymPy's text, in this notation."""
+        return with_formulas(source, self.formula, {"==": "="}) if self.plain else source
+
+
+def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
+    """Return a condition in SymPy's text, such as ``0 <= x <= pi and y > 0``, with its formulas and signs rewritten.
+
+    A condition that cannot be read stays unchanged.
+    """
+    pieces = SIGN.split(source)
+    try:
+        formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
+    except InputError:
+        return source
+    between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
+    return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))
+
 
 def decimal(value: Fraction) -> str:
     """Return a number as text: as a decimal number if that is exact and short, otherwise as a fraction in brackets."""
@@ -111,7 +137,7 @@ def notation_of(reading: Reading) -> TypedNotation:
 
 
 END = Node("name", "")
-"""No factor, after the last one."""
+"""A stand-in for the factor after the last one."""
 
 
 def _is_number_power(node: Node) -> bool:

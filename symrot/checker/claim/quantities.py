@@ -8,7 +8,7 @@ from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, walk
 
 __all__ = [
-    "OTHER_MEANINGS", "has_natural_base", "imaginary_letter", "letters_of_quantities", "with_natural_base",
+    "OTHER_MEANINGS", "has_natural_base", "letters_of_quantities", "with_natural_base",
 ]  # fmt: skip
 
 OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
@@ -59,12 +59,15 @@ def _is_imaginary(product: Node, letter: str) -> bool:
     return len(others) < len(product.args) and pure and any(factor.kind == "call" for factor in others)
 
 
-IMAGINARY = ("i", "j")
-
-
 def has_natural_base(trees: Sequence[Node]) -> bool:
-    """Return whether the letter e is the base of the exponential function, as its exponent is not a number."""
-    return any(_is_exponential(node, "e") for tree in trees for _, node in walk(tree))
+    """Return whether the letter e is the base of the exponential function.
+
+    It is if e has an exponent that is not a number, or if e is in the argument of a logarithm.
+    """
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")
+    of_e = any(e.value == "e" for argument in logarithms for e in (argument, *argument.args[:1]) if e.kind == "name")
+    return of_e or any(_is_exponential(node, "e") for node in nodes)
 
 
 def _is_exponential(node: Node, base: str) -> bool:
@@ -80,16 +83,3 @@ def with_natural_base(node: Node) -> Node:
     if (node.kind, node.value) == ("name", "e"):
         return Node("call", "exp", (Node("number", Fraction(1)),), node.span)
     return replace(node, args=tuple(map(with_natural_base, node.args)))
-
-
-def imaginary_letter(trees: Sequence[Node]) -> Node | None:
-    """Return the letter i or j if it is in an exponent of e or in exp(..), where it is mostly the imaginary unit."""
-    exponents = [
-        node.args[-1]
-        for tree in trees
-        for _, node in walk(tree)
-        if _is_exponential(node, "e") or (node.kind == "call" and node.value == "exp" and node.args)
-    ]
-    return next(
-        (part for e in exponents for _, part in walk(e) if part.kind == "name" and part.value in IMAGINARY), None
-    )

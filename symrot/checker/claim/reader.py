@@ -7,22 +7,23 @@ have several, and the usual one comes first.
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number
-from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter
+from symrot.checker.typed.copied_text import without_surroundings
+from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
-from symrot.checker.typed.words import UNITS, pieces_of_word, shorthands, split_tokens
+from symrot.checker.typed.words import UNITS, lost_power, pieces_of_word, shorthands, split_tokens
 from symrot.errors import InputError, complaint
 
 __all__ = [
-    "DEEPEST_NESTING", "LONGEST_TEXT", "Chain", "Declared", "Reading", "Relation", "read_expression", "read_relation",
-    "readings_of", "with_time",
+    "DEEPEST_NESTING", "LONGEST_TEXT", "Chain", "Declared", "Reading", "Relation", "distinct_readings", "each_reading",
+    "read_expression", "read_relation", "readings_of", "with_time",
 ]  # fmt: skip
 
 LONGEST_TEXT = 20_000
@@ -30,6 +31,12 @@ MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
 """The most readings of one text that are tried, and the most places with two readings that are looked at."""
+
+DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
+"""The tokens of ``(R a)·(R b)``, with None in place of each name."""
+
+FIRST_AND_LAST = ("i", "f")
+"""Indices of the first and last value of a quantity."""
 
 Relation = tuple[str, Node, Node]
 
@@ -55,10 +62,13 @@ class Chain:
     ----------
     signs : tuple of str
     sides : tuple of Node
+    both_signs : bool
+        Whether this line is one of the two that a line with ± stands for.
     """
 
     signs: tuple[str, ...]
     sides: tuple[Node, ...]
+    both_signs: bool = False
 
     @property
     def links(self) -> tuple[Relation, ...]:
@@ -86,13 +96,13 @@ class Reading:
     notes : tuple of str
         Sentences about how the text is read.
     spelling : dict
-        Name here -> name as it is typed, where they differ.
+        Name in the trees -> name as it was typed, where they differ.
     timed : frozenset of str
         Names that are functions of time.
     vectors : mapping of str to bool
         Names that are vectors because of the way in which they are used; True for one with a hat.
     flipped : tuple of str
-        The places that are read in the other way than usual.
+        The excerpts of the text that are read in their less usual way.
     """
 
     lines: tuple[Chain, ...]
@@ -113,7 +123,7 @@ class Reading:
 class _Text:
     """The tokens of a text, with the functions that interpret them."""
 
-    def __init__(self, source: str, where: str, declared: Declared) -> None:
+    def __init__(self, source: str, where: str, declared: Declared, numbers: bool = True) -> None:
         self.source, self.where, self.declared = source, where, declared
         prefix = f"{where}: " if where else ""
         if not isinstance(source, str):
@@ -122,7 +132,13 @@ class _Text:
             raise InputError(f"{prefix}expected a formula, got empty text")
         if len(source) > LONGEST_TEXT:
             raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-        self.tokens, self.totals = _without_totals(list(tokens_of(source, where)))
+        self.copied = without_surroundings(source, numbers)
+        tokens = list(tokens_of(self.copied.text, where))
+        if (place := self.copied.where) >= 0:  # a clause after "where" defines names of the formula before it
+            clauses = [token for token in tokens[:-1] if token.start >= place]
+            end = Token("mark", ";", place, place)
+            tokens = [*clauses, *([end] if clauses else []), *tokens[: len(tokens) - 1 - len(clauses)], tokens[-1]]
+        self.tokens, self.totals = _without_totals(tokens)
         if len(self.tokens) > MOST_PIECES:
             raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
 
@@ -146,7 +162,7 @@ class _Text:
         alone = {*_alone(self.tokens, marked), *self.declared.symbols}
         tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
         if not whole:
-            words, notes, doubts = self.words(alone, flips)
+            words, notes, doubts = self.words(alone, flips, {*_crossed(tokens, marked, flips), *marked})
             tokens = self.without_shorthand(list(split_tokens(tokens, words)), flips, notes, doubts)
             tokens = self.with_indices(tokens, flips, doubts)
             pairs = pairwise(self.tokens)
@@ -160,21 +176,21 @@ class _Text:
             frozenset([*_crossed(tokens, marked, flips), *marked]),
         )
         lines, plain = [], not self.source.isascii() or not whole
-        timed, differentiated = set[str](), set[str]()
+        timed, differentiated = set[str]() if whole else {*self.declared.functions}, set[str]()
         divided = [tokens] if one_side else list(self.lines(tokens))
         if not divided:
             raise complaint(self.source, self.where, 0, "a formula")
-        for line in divided:
+        for pieces, line in ((own, line) for own in map(list, map(_with_signs, divided)) for line in own):
             parser = Parser(line, self.source, self.where, vocabulary, flips, as_sympy)
             signs, sides = ([], [parser.whole()]) if one_side else parser.relation()
-            lines.append((signs, sides))
+            lines.append((signs, sides, len(pieces) > 1))
             plain |= parser.plain
             doubts += parser.doubts
             notes += [note for note in parser.notes if note not in notes]
             timed |= parser.timed
             differentiated |= parser.differentiated
-        notes += [note for note in self.totals if note not in notes]
-        plain |= bool(self.totals)
+        notes += [note for note in (*self.totals, *self.copied.notes) if note not in notes]
+        plain |= bool(self.totals) or self.copied.text != self.source
         constants = differentiated - timed
         if constants and len(constants) < len(differentiated):
             doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
@@ -184,10 +200,10 @@ class _Text:
                 notes.append(f"{_listed(sorted(constants))} {are}, having no rate in the text")
                 constants = set()
         timed |= constants
-        plain |= len(lines) > 1 or any(len(sides) > 2 for _, sides in lines)
+        plain |= len(lines) > 1 or any(len(sides) > 2 for _, sides, _ in lines)
         finished = tuple(
-            Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides))
-            for signs, sides in lines
+            Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides), both_signs)
+            for signs, sides, both_signs in lines
         )
         hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
@@ -205,15 +221,24 @@ class _Text:
         )
 
     def words(
-        self, alone: Collection[str], flips: Collection[tuple[str, int]]
+        self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
         """Return the words that are several names (``mgl`` is m g l), sentences about them, and the doubtful words."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
-        alone = {*alone}
+        alone = {*alone} | ({"x", "y", "z"} if any(token.text == "∫" for token in self.tokens) else set())
         first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
+                continue
+            if word in vectors or word in self.differentials:
+                continue
+            if (power := lost_power(word)) and self.is_spaced_after(word):
+                doubt = Doubt(("power of function", start), word)
+                doubts.append(doubt)
+                words[word] = (power[0], power[2]) if doubt.key in flips else power
+                if doubt.key not in flips:
+                    notes.append(f"{word} before a blank is read as {power[0]}^{power[2]}, whose raised digit was lost")
                 continue
             pieces, usual = pieces_of_word(word, alone)
             if not pieces:
@@ -228,6 +253,23 @@ class _Text:
                 words[word] = pieces
                 notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
         return words, notes, doubts
+
+    @property
+    def differentials(self) -> set[str]:
+        """The words dy and dx of ``dy/dx`` and of ``d/dx (..)``."""
+        words = set()
+        for n, slash in enumerate(self.tokens):
+            above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
+            is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")
+            is_above = above.text == ")" or is_above
+            if slash.text == "/" and is_above and re.fullmatch(r"d[A-Za-z]", below.text):
+                words |= {word for word in (above.text, below.text) if re.fullmatch(r"d[A-Za-z]", word)}
+        return words
+
+    def is_spaced_after(self, word: str) -> bool:
+        """Return whether a blank and another name follow every occurrence of a word in the text."""
+        pairs = [after for token, after in pairwise(self.tokens) if token.kind == "name" and token.text == word]
+        return all(after.kind == "name" and after.spaced for after in pairs)
 
     def without_shorthand(
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
@@ -266,6 +308,8 @@ class _Text:
             before, first, second, after = padded[place], *tokens[place : place + 3]
             greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
             whole = (before is None or first.breaks) and after.text in SIGNS
+            if greek and second.tight and second.text in FIRST_AND_LAST and self.has_first_and_last(first.text):
+                whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
             doubt = Doubt(("index", first.start), self.source[first.start : second.end])
@@ -274,6 +318,13 @@ class _Text:
                 merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
                 tokens[place : place + 2] = [merged]
         return tokens
+
+    def has_first_and_last(self, letter: str) -> bool:
+        """Return whether a text has ``ωi`` and ``ωf``, the first and last value, and no i or f by itself."""
+        pairs = list(pairwise(self.tokens))
+        after = {second.text for first, second in pairs if first.text == letter and second.tight}
+        alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
+        return {*FIRST_AND_LAST} <= after and not alone & {*FIRST_AND_LAST}
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
         """Yield the tokens of each line.
@@ -308,9 +359,9 @@ class _Text:
 
     def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
         """Return whether a token after the end of a line starts another claim."""
-        if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", *SIGNS) or token.kind == "end":
+        if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", "⊗", *SIGNS) or token.kind == "end":
             return False
-        if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", ")", "]", ","):
+        if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", "⊗", ")", "]", ","):
             return False
         if not any(piece.text in SIGNS for piece in line):
             return False
@@ -326,6 +377,21 @@ class _Text:
         while len(line) > 1 and line[-1].kind == "mark" and line[-1].text in (",", "."):
             line = line[:-1]
         return [*line, Token("end", "", line[-1].end, line[-1].end)]
+
+
+def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
+    """Yield the tokens of a line; of a line with ± or ∓, first with the upper signs, then with the lower signs."""
+    if not any(sign in token.text for token in line for sign in "±∓"):
+        yield line
+        return
+    for signs in ({"±": "+", "∓": "-"}, {"±": "-", "∓": "+"}):
+        names = {mark: {"+": "plus", "-": "minus"}[sign] for mark, sign in signs.items()}
+        yield [
+            token._replace(text=signs[token.text]) if token.text in signs
+            else token._replace(text=token.text[:-1] + names[token.text[-1]]) if token.text[-1:] in names
+            else token
+            for token in line
+        ]  # fmt: skip
 
 
 def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
@@ -345,12 +411,18 @@ def _is_cross(before: Token | None, token: Token, after: Token, vectors: Collect
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
     """Yield the names on either side of the sign of a cross product."""
     alone = set(_alone(tokens, vectors))
-    for before, sign, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
+    padded = [*tokens, tokens[-1]]
+    for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
         if (sign.kind == "mark" and sign.text == "×") or (
             "x" not in alone and _is_cross(before, sign, after, vectors) and ("cross", sign.start) not in flips
         ):
-            numbers = "number" in (before.kind, after.kind)
-            yield from (token.text for token in (before, after) if token.kind == "name" and not numbers)
+            if "number" in (before.kind, after.kind):
+                continue
+            is_factor = after.text[:1].isupper() or not is_usual_vector(after.text)  # R a x R b and r x m v
+            is_vector = is_usual_vector(last.text) or after.text in ("m", "M")
+            is_followed = last.kind == "name" and last.text != "x" and is_vector
+            own = last if is_factor and is_followed and not last.breaks else after
+            yield from (token.text for token in (before, own) if token.kind == "name")
 
 
 def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
@@ -358,7 +430,7 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
     others, notes = [], []
     for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
         is_sum = token.kind == "sum" or (token.kind, token.text) == ("name", "sum")
-        if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+)?", after.text):
+        if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+|[A-Za-z0-9])?", after.text):
             notes.append(f"the sum of {after.text} is read as one quantity, the total")
         else:
             others.append(token)
@@ -366,7 +438,22 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 
 
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``."""
+    """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
+
+    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b are
+    vectors that a matrix R rotates.
+    """
+    triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
+    lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
+    for left, dot, right in triples:
+        if dot.text == "·" and {left.text, right.text} <= lengths:
+            yield from (left.text, right.text)
+    for place in range(len(tokens) - len(DOT_OF_PRODUCTS)):
+        pieces = [tokens[place + n].text for n in range(len(DOT_OF_PRODUCTS))]
+        if all(sign in (None, piece) for sign, piece in zip(DOT_OF_PRODUCTS, pieces, strict=True)):
+            (matrix, first), (other, second) = pieces[1:3], pieces[6:8]
+            if matrix == other and matrix.isupper() and is_usual_vector(first) and is_usual_vector(second):
+                yield from (first, second)
     for place, name in enumerate(tokens[:-1]):
         before, after, last = tokens[max(place - 1, 0)], tokens[place + 1], tokens[min(place + 2, len(tokens) - 1)]
         bracketed = before.text == "["
@@ -374,6 +461,7 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
             after.kind in ("hat", "tilde")
             or (bracketed and after.text == "]" and last.text in ("x", "×") and last.tight)
             or (bracketed and after.text in ("x", "×") and last.text == "]")
+            or (before.text == "(" and after.text == ")" and tokens[max(place - 2, 0)].text == "S")
             or (_is_dot(after) and last.spaced and last.kind == "name")
             or (_is_dot(before) and name.spaced)
         ):
@@ -397,7 +485,7 @@ def _listed(words: Sequence[str]) -> str:
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
     """Return a tree with functions of time written ``f(t)``, and with tables of numbers as matrices.
 
-    Vectors are names without ``(t)``, and their squares are scalar products.
+    A vector is written without ``(t)``, and its square is a scalar product.
     """
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
@@ -408,7 +496,8 @@ def _finished(node: Node, timed: Collection[str], vectors: Collection[str], pare
     if node.kind == "power" and node.args[0].value in vectors and node.args[1] == number(2):
         own = _finished(node.args[0], timed, vectors)
         return Node("call", "dot", (own, own), node.span)
-    if node.kind == "list" and parent not in ("call", "list", "transpose", "index"):
+    nested = parent == "transpose" and node.kind == "list" and node.args[0].kind == "list"
+    if node.kind == "list" and (parent not in ("call", "list", "transpose", "index") or nested):
         if len(node.args) == 1:
             return _finished(node.args[0], timed, vectors, parent)
         inside = replace(node, value=("[", "]"), args=tuple(_finished(a, timed, vectors, "list") for a in node.args))
@@ -441,7 +530,15 @@ def readings_of(source: str, where: str = "", declared: Declared | None = None) 
     >>> [text(reading.relation[2]) for reading in readings_of("T = 1/2m v^2")]
     ['1/2*m*v**2', '1/(2*m)*v**2']
     """
-    return list(_readings(_Text(source, where, declared or Declared()), False))
+    text = _Text(source, where, declared or Declared())
+    readings = list(_readings(text, False))
+    if text.copied.numbers:
+        try:
+            others = _readings(_Text(source, where, declared or Declared(), numbers=False), False)
+        except InputError:
+            return readings
+        readings += [replace(reading, flipped=text.copied.numbers) for reading in others]
+    return distinct_readings(readings)
 
 
 def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
@@ -454,9 +551,9 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
         others = (
             replace(r, flipped=r.flipped or tuple(d.excerpt for d in r.doubts)) for r in _typed(text, one_side, False)
         )
-        return _distinct([strict, *others])
+        return distinct_readings([strict, *others])
     try:
-        return _distinct(_typed(text, one_side, True))
+        return distinct_readings(_typed(text, one_side, True))
     except InputError as reason:
         raise (refusal or reason) from None
 
@@ -464,11 +561,18 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
     """Yield the readings of a text as people type it: the usual one first, then the other ones."""
     try:
-        usual = text.read(False, False, (), one_side)
+        yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
     except InputError:
         if required:
             raise
-        return
+
+
+def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
+    """Yield the readings of a text: the usual one first, then those in which a doubtful place has its other meaning.
+
+    ``read`` returns the reading in which the doubts with the given keys have their less usual meaning.
+    """
+    usual = read(())
     yield usual
     keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
     kinds = dict.fromkeys(kind for kind, _ in keys)
@@ -476,12 +580,12 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
     choices += [{key} for key in keys if key[0] not in ("word", "name")]
     for flips in choices:
         try:
-            yield text.read(False, False, flips, one_side)
+            yield read(flips)
         except InputError:
             continue
 
 
-def _distinct(readings: Iterable[Reading]) -> list[Reading]:
+def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
     """Return the readings that have different trees.
 
     If there are too many to try, a note on the first reading says so.
@@ -496,11 +600,15 @@ def _distinct(readings: Iterable[Reading]) -> list[Reading]:
     return [usual, *others[: MOST_READINGS - 1]]
 
 
-def _only(readings: Sequence[Reading], source: str, where: str) -> Reading:
-    """Return the reading of a text with a single interpretation; raise InputError for a text with several."""
+def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
+    """Return the reading of a text with a single interpretation; raise InputError for a text with several.
+
+    With ``rates``, a prime after a name is certainly a rate.
+    """
     usual = readings[0]
-    if usual.plain and len(readings) > 1:
-        doubt = usual.doubts[0]
+    doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
+    if usual.plain and len(readings) > 1 and doubts:
+        doubt = doubts[0]
         raise complaint(
             source, where, doubt.key[1], f"brackets or product signs, since {doubt.excerpt!r} has two readings,"
         )
@@ -535,14 +643,16 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
     if strict is not None:
         return strict.lines[0].sides[0]
     try:
-        readings = _distinct(_typed(text, True, True))
+        readings = distinct_readings(_typed(text, True, True))
     except InputError as reason:
         raise (refusal or reason) from None
     return _only(readings, source, where).lines[0].sides[0]
 
 
-def read_relation(source: str, where: str = "", declared: Declared | None = None) -> Relation:
+def read_relation(source: str, where: str = "", declared: Declared | None = None, rates: bool = False) -> Relation:
     """Return (sign, left, right) of ``left == right``; the signs ``!= > >= < <=`` are read for hypotheses.
+
+    With ``rates``, ``x'`` is always the rate of x, never a name of its own.
 
     Raises
     ------
@@ -553,7 +663,7 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
     strict, refusal = _strict(text, False)
     if strict is None:
         try:
-            strict = _only(_distinct(_typed(text, False, True)), source, where)
+            strict = _only(distinct_readings(_typed(text, False, True)), source, where, rates)
         except InputError as reason:
             raise (refusal or reason) from None
     if len(strict.lines) > 1 or len(strict.lines[0].signs) > 1:

@@ -1,6 +1,7 @@
 """The scope in which a claim is evaluated: its names, the divisors and roots of its text, and its errors."""
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -53,6 +54,8 @@ class Scope(ABC):
         Divisors of the text that may vanish; evaluation adds to them.
     radicands : list of Expr
         Formulas under its even roots that may be negative; evaluation adds to them.
+    bases : list of Expr
+        Bases of powers whose exponents are not numbers; the powers are read for positive bases.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -62,13 +65,21 @@ class Scope(ABC):
     where: str = ""
     divisors: list[Divisor] = field(default_factory=list)
     radicands: list[Expr] = field(default_factory=list)
+    bases: list[Expr] = field(default_factory=list)
+
+    @property
+    def assumed_bases(self) -> tuple[Expr, ...]:
+        """The bases of powers that nothing else in the text, such as a logarithm of the base, shows to be positive."""
+        powers = Counter(self.bases)
+        radicands = Counter(self.radicands)
+        return tuple(base for base, times in powers.items() if radicands[base] <= times)
 
     def fail(self, node: Node, expected: str) -> InputError:
         return complaint(self.source, self.where, node.span[0], expected)
 
     @abstractmethod
     def evaluate(self, node: Node) -> Any:
-        """Return the value of a tree: Expr, ImmutableMatrix or a tuple of those."""
+        """Return the value of a tree: Expr, ImmutableMatrix or a tuple of such values."""
 
     def scalar(self, node: Node, of: str) -> Expr:
         value = self.evaluate(node)
@@ -84,7 +95,7 @@ class Scope(ABC):
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Refuse a value inside of so many functions and roots that one more would be too many."""
+        """Raise InputError for a value with so many functions and roots inside each other that one more is too many."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 

@@ -1,7 +1,7 @@
 """The shapes of the formulas of a claim, from its trees alone, and the unit matrices that a text writes as I or 1.
 
-``R R^T = I`` means the unit matrix by I, and so does ``cos(a) I + (1 - cos(a)) n n^T``; in ``L = I omega`` it is a
-moment of inertia. The shapes tell which: a scalar cannot be added to a matrix or be equal to one.
+In ``R R^T = I`` and in ``cos(a) I + (1 - cos(a)) n n^T``, I is the unit matrix; in ``L = I omega`` it is a moment of
+inertia. The shapes tell which: a scalar can neither be added to a matrix nor be equal to one.
 """
 
 from collections.abc import Mapping
@@ -24,6 +24,8 @@ FIXED: Mapping[str, Shape] = {
     "skew": (3, 3),
     "dcm_of": (3, 3),
     "qmul": (4, 1),
+    "conjugate": (4, 1),
+    "vector_part": (3, 1),
     **dict.fromkeys(ROTATIONS, (3, 3)),
 }
 """Function -> the shape of its value."""
@@ -41,18 +43,24 @@ def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
         return matrices[0] if matrices else None
     if node.kind == "transpose":
         return (matrices[0][1], matrices[0][0]) if matrices else None
-    return _shape_of_call(node, inner) if node.kind == "call" else None
+    return _shape_of_call(node, inner, shapes) if node.kind == "call" else None
 
 
-def _shape_of_call(node: Node, inner: list[Shape]) -> Shape:
+def _shape_of_blocks(rows: Node, shapes: Mapping[str, Shape]) -> Shape:
+    """Return the shape of a matrix whose rows hold scalars or smaller matrices."""
+    lines = [row.args if row.kind == "list" else (row,) for row in rows.args]
+    cells = [[shape_of(cell, shapes) or (1, 1) for cell in line] for line in lines]
+    return sum(max(height for height, _ in line) for line in cells), sum(width for _, width in cells[0])
+
+
+def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) -> Shape:
     name = str(node.value)
-    if name == "Matrix" and node.args[0].kind == "list":
-        rows = node.args[0].args
-        return len(rows), len(rows[0].args) if rows and rows[0].kind == "list" else 1
+    if name == "Matrix" and node.args[0].kind == "list" and node.args[0].args:
+        return _shape_of_blocks(node.args[0], shapes)
     if name in ("eye", "diag"):
         count = len(node.args) if name == "diag" else node.args[0].value
         return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
-    if name in ("diff", "inverse", "adjugate"):
+    if name in ("diff", "inverse", "adjugate", "integrate", "integral_over_body"):
         return inner[0]
     if name == "transpose":
         return inner[0] and (inner[0][1], inner[0][0])
@@ -60,8 +68,13 @@ def _shape_of_call(node: Node, inner: list[Shape]) -> Shape:
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one."""
+    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one.
+
+    In ``I = [[a, b], [c, d]]`` the letter I names the matrix.
+    """
     sign, *sides = relation
+    if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
+        return relation
     left, right = (_with_unit_matrices(side, shapes) for side in sides)
     for side, other in ((left, right), (right, left)):
         shape = shape_of(side, shapes)
@@ -70,8 +83,15 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
     return sign, left, right
 
 
+def _is_name_of(name: Node, matrix: Node) -> bool:
+    """Return whether a side is a letter alone, and the other side a matrix that is written out with letters in it."""
+    is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
+    letters = [node for _, node in walk(matrix) if node.kind == "name"]
+    return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
+
+
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names, scalars so far, that are terms of a sum of vectors or matrices, with the shape of the sum."""
+    """Return the names of unknown shape that are terms of a sum of vectors or matrices, with the shape of the sum."""
     added: dict[str, Shape] = {}
     for side in relation[1:]:
         for _, node in walk(side):

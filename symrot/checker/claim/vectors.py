@@ -1,11 +1,11 @@
 """The vectors and tensors of a claim: their components, named for them, and their lengths.
 
-A name in bold, with an arrow or with a hat is a vector, ``a`` with the components a_x, a_y and a_z; the same letter in
-plain type is its length. While LaTeX is read, ``MARK`` after a name says that the name is marked.
+A name with a mark (bold type, an arrow or a hat) is a vector, ``a`` with the components a_x, a_y and a_z; the same
+letter in plain type is its length. While LaTeX is read, the ending ``MARK`` of a name says that the name has a mark.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from symrot.checker.claim.tree import Node, number, product, walk
@@ -17,11 +17,15 @@ __all__ = [
     "is_components",
     "is_tensor",
     "used_vectors",
+    "with_scalar_products",
     "without_marks",
 ]
 
 MARK = "\N{RIGHTWARDS ARROW}"
 TIME = Node("name", "t")
+AXES = ("xyz", "123", "1234", "0123")
+"""The last letters of the names of the components of vectors; of four for a quaternion."""
+
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 """The names of inertia tensors."""
 
@@ -41,7 +45,7 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of its components, ``Matrix([a_x, a_y, a_z])``, or of the numbers of a coordinate axis."""
+        """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
         if self.is_axis:
             return _matrix([number(int(self.name == axis)) for axis in "xyz"])
         if is_tensor(self.name):
@@ -78,14 +82,20 @@ def is_tensor(name: str) -> bool:
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether the definition of a name only says that it is a vector with components named for it."""
-    return any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in ("xyz", "123"))
+    """Return whether the definition of a name only says what its components are called: ``R_11`` and so on."""
+    if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
+        return True
+    base = name.partition("_")[0]
+    leaves = [node for _, node in walk(tree) if node.kind != "list" and node != TIME]
+    return tree.kind == "call" and tree.value == "Matrix" and all(
+        node.kind in ("name", "call") and re.fullmatch(rf"{base}_?[0-9]+", str(node.value)) for node in leaves[1:]
+    )  # fmt: skip
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without marks, and the names that had them; True for one with a hat.
+    """Return the sides of a claim without marks, and the names that had marks, each with whether it had a hat.
 
-    The name of a vector without a mark is its length.
+    Where the name of a vector has no mark, it means the length of the vector.
 
     Parameters
     ----------
@@ -95,8 +105,11 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
     """
     plain = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
     spelled = {name: f"{name}_tensor" if is_tensor(name) and name in plain else name for name in names}
-    vectors = [Node("name", name) for name in names if not is_tensor(name)]
+    parts = {name for name in names if {name, f"{name}_0"} <= plain}  # of a quaternion, whose name has no mark
+    spelled |= {name: f"{name}_vec" for name in parts}
+    vectors = [Node("name", name) for name in names if not is_tensor(name) and name not in parts]
     sides = [_without_marks(side, spelled, vectors) for side in sides]
+    sides = [with_scalar_products(side, [spelled[name] for name in parts]) if parts else side for side in sides]
     return sides, {spelled[name]: unit for name, unit in names.items()}
 
 
@@ -114,12 +127,15 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
     moving = {node.value for rate in rates for _, node in walk(rate.args[0])}
     axes = {name for name in names if Vector(name, unit=names[name]).is_axis}
     needed = (used & {*names}) - (_lone_names(sides) - axes)
-    numbered = {name for name in names for n in "123" if f"{name}_{n}" in used}
-    return tuple(
-        Vector(name, name in moving, names[name], "123" if name in numbered or name == "R" else "xyz")
-        for name in names
-        if name in needed
-    )
+    return tuple(Vector(name, name in moving, names[name], _axes(name, used)) for name in names if name in needed)
+
+
+def _axes(name: str, used: Collection[str]) -> str:
+    """Return the last letters of the names of a vector's components: numbers if the names ``used`` have them."""
+    numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
+    if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
+        return "0123" if "0" in numbers else "1234"
+    return "123" if numbers or name == "R" else "xyz"
 
 
 def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Node]) -> Node:
@@ -134,14 +150,18 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
-    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero."""
+    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero.
+
+    In ``w.T*J*w`` J is a tensor too.
+    """
     for side in sides:
         for _, node in walk(side):
             factors: Sequence[Node] = ()
             if node.kind == "call" and node.value == "cross" and node.args[1].kind == "product":
                 factors = (node.args[0], *node.args[1].args)
             elif node.kind == "product":
-                factors = [f.args[0] if f.kind == "call" and f.value == "skew" else f for f in node.args]
+                wrapped = [f.kind == "transpose" or (f.kind == "call" and f.value == "skew") for f in node.args]
+                factors = [f.args[0] if inside else f for f, inside in zip(node.args, wrapped, strict=True)]
             for before, name, after in zip(factors, factors[1:], factors[2:], strict=False):
                 if name.kind == "name" and before == after and is_tensor(str(name.value)):
                     yield str(name.value)
@@ -155,8 +175,14 @@ def _lone_names(sides: Sequence[Node]) -> set[str]:
     return {str(side.value) for side in alone if everywhere.count(side.value) == 1}
 
 
+def with_scalar_products(node: Node, names: Collection[str]) -> Node:
+    """Return a tree in which the scalar product of a and b replaces a.T*b, for vectors a and b in ``names``."""
+    made = replace(node, args=tuple(with_scalar_products(child, names) for child in node.args))
+    return _with_scalar_products(made, [Node("name", name) for name in names]) if made.kind == "product" else made
+
+
 def _with_scalar_products(node: Node, vectors: Sequence[Node]) -> Node:
-    """Return a product in which a.T*b, of two vectors, is the scalar product of a and b."""
+    """Return a product in which the scalar product of two vectors a and b replaces a.T*b."""
     factors: list[Node] = []
     for factor in node.args:
         last = factors[-1] if factors else None

@@ -8,18 +8,20 @@ to vanish.
 import re
 from collections.abc import Sequence
 from functools import reduce
+from typing import Any
 
-import sympy
-from sympy import Abs, Add, Expr, Mul, Pow
+from sympy import Expr
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.decide.definite import surely_nonnegative
+from symrot.checker.decide.ranges import range_text
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Requirement
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["branch_requirements", "requirements", "surely_nonnegative"]
+__all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -28,14 +30,11 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 MOST_TERMS, LARGEST_DEGREE = 400, 24
 """The most terms, and the largest degree, of a residual that is factored."""
 
-MOST_TERMS_OF_SQUARE = 40
-"""The most terms of a sum that is factored to see if it is a square."""
-
 
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the conditions that textbooks state and each of which makes all residuals (left - right) vanish.
+    """Return conditions, of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
 
     Parameters
     ----------
@@ -43,7 +42,7 @@ def requirements(
     numerators : sequence of PolyElement
         The reduced numerators of the residuals that are not zero.
     sides : sequence of (Expr, Expr)
-        Left and right side of the entries that they belong to.
+        Left and right side of the entry that each residual belongs to.
     entries : int
         The number of entries of the claim.
     """
@@ -73,16 +72,21 @@ def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypo
     """Return whether one side of each wrong entry lacks one of the symbols of a condition such as ``A = B``.
 
     An author who silently assumes ``A = B`` writes only one of the two. A text with both, such as ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way. If a hypothesis relates a symbol to the symbols of a side, the side counts
-    as having it.
+    ``(B - A) w``, is wrong in another way, and so is a text that has both on one side and neither on the other. If a
+    hypothesis relates a symbol to the symbols of a side, the side counts as having it.
     """
     (formula,) = requirement.zeros
+    symbols = formula.free_symbols
 
-    def involves(side: Expr, symbol: Expr) -> bool:
+    def involved(side: Expr) -> set[Any]:
         own = side.free_symbols
-        return symbol in own or any(symbol in h.free_symbols and own & h.free_symbols for h in hypotheses)
+        groups = [own, *(h.free_symbols for h in hypotheses if own & h.free_symbols)]
+        return {symbol for symbol in symbols if any(symbol in group for group in groups)}
 
-    return all(any(not involves(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
+    def one_sided(pair: tuple[Expr, Expr]) -> bool:
+        return any(symbols <= side.free_symbols and not involved(other) for side, other in (pair, pair[::-1]))
+
+    return all(any(involved(side) != symbols for side in pair) and not one_sided(pair) for pair in sides)
 
 
 def _associated(first: PolyElement, second: PolyElement) -> bool:
@@ -111,7 +115,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
     """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` that a factor states; None for a sum of moments.
 
-    A sum of moments of inertia is positive, so that it is no condition.
+    A sum of moments of inertia is positive: it cannot be zero.
     """
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
@@ -136,7 +140,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia are zero, if the claim is true under it; otherwise None."""
+    """Return the condition that all products of inertia are zero if it makes the claim true; else an empty list."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -157,8 +161,9 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
     Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
-    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. The list is empty if that
-    is so wherever the claim is defined.
+    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
+    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if ``-a/b >= 0`` holds
+    wherever the claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -175,7 +180,8 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 signs[f"{as_text(value)} >= 0"] = value
         else:
             stated = tuple(signs[text] for text in sorted(signs))
-            return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
+            text = range_text([(value, ">= 0") for value in stated], divided=False)
+            return [Requirement("sign_branch", text, signs=stated)] if text else []
     return None
 
 
@@ -183,23 +189,3 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
     """Return (a, b) with poly = a + b*generator."""
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero
-
-
-def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula, such as a sum of squares, shows that it is never negative.
-
-    Its square roots are taken to be real.
-    """
-    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
-        return True
-    if isinstance(value, Pow) and value.exp.is_Rational:
-        even = value.exp.q == 1 and value.exp.p % 2 == 0
-        return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
-    if isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args)):
-        return True
-    if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
-        return False
-    if any(value == 1 - node**2 for node in value.atoms(sympy.sin, sympy.cos)):
-        return True
-    factored = sympy.factor(value)
-    return not isinstance(factored, Add) and surely_nonnegative(factored)

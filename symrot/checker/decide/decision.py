@@ -1,7 +1,7 @@
 """The decision on a claim: the stages of :mod:`symrot.exact.decision`, and stages of its own.
 
-A claim brings hypotheses, and its text divides and takes roots where SymPy may have cancelled both. Stages of its own
-use the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
+A claim may have hypotheses, and its text may have divisors and roots that SymPy has cancelled. Further stages use the
+hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
 (:mod:`symrot.checker.decide.conditions`).
 """
 
@@ -13,15 +13,17 @@ from itertools import product
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Ge, Gt, I, Mul, Ne, Pow, Rational, Symbol, atan2, pi, preorder_traversal
+from sympy import Expr, Ge, Gt, I, Ne, Rational, Symbol, atan2, preorder_traversal
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.decide.conditions import branch_requirements, requirements, surely_nonnegative
+from symrot.checker.decide.conditions import branch_requirements, requirements
+from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.hypotheses import Hypotheses
+from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
+from symrot.checker.decide.ranges import condition_texts, follow, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError
-from symrot.exact.angles import cyclotomic
 from symrot.exact.budget import one_decision
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import normal_form
@@ -31,8 +33,10 @@ from symrot.exact.decision import (
     Search,
     Shape,
     ShapeMismatch,
+    arguments,
     congruence,
     first_decision,
+    flatten,
     matched_sides,
     place_in_matrix,
     prove,
@@ -41,26 +45,23 @@ from symrot.exact.decision import (
     subtract,
 )
 from symrot.exact.domain import domain
-from symrot.exact.domain.known_points import holds
-from symrot.exact.domain.needs import Need, needs_of
+from symrot.exact.domain.known_points import holds, known_point
+from symrot.exact.domain.needs import Need, leaves_of, needs_of
 from symrot.exact.evidence import Counterexample, Requirement
 from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.inverse_sums import lifts, principal
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
-from symrot.exact.ring.roots import written
+from symrot.exact.ring.roots import is_positive_where_defined, written
 
-__all__ = ["Equation", "decide_equation"]
+__all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 
 MUCH_LARGER = 5
 """A formula with more than this many times the pieces of another one certainly has the longer text."""
 
 MOST_ON_THE_CUT = 4
 """The most symbols of a formula with atan2 that is examined at points where some of them are zero."""
-
-LARGEST_DEGREE = 240
-"""The largest degree of a side in its symbols, sines and cosines; a larger one is refused before it is expanded."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,8 @@ class Equation:
         Formulas that hypotheses state to be nonzero.
     radicands : tuple of Expr
         Formulas of which the text takes even roots.
+    bases : tuple of Expr
+        Bases of powers whose exponents are not numbers; such powers are read for positive bases.
     """
 
     left: Any
@@ -86,6 +89,12 @@ class Equation:
     divisors: tuple[Expr, ...] = ()
     nonzero: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
+    bases: tuple[Expr, ...] = ()
+
+
+def is_large(equation: Equation) -> bool:
+    """Return whether a side of an equation is too large to be expanded, so that no repair can be found."""
+    return degree_of([*flatten(equation.left)[0], *flatten(equation.right)[0]]) > LARGEST_DEGREE
 
 
 def decide_equation(equation: Equation) -> Decision:
@@ -94,8 +103,8 @@ def decide_equation(equation: Equation) -> Decision:
     Raises
     ------
     InputError
-        If the shapes differ, a side is no finite exact formula, it divides by a formula that is zero everywhere, the
-        hypotheses contradict each other, or the degree exceeds ``LARGEST_DEGREE``.
+        If the shapes differ, a side is not a finite exact formula or divides by a formula that is zero everywhere, the
+        hypotheses contradict each other, or a degree above ``LARGEST_DEGREE`` rules out the expansion that is needed.
     """
     try:
         with one_decision():
@@ -111,10 +120,13 @@ def decide_equation(equation: Equation) -> Decision:
 def _decide(equation: Equation) -> Decision:
     lefts, rights, shape = _sides(equation)
     relations = [as_zero(relation) for relation in equation.hypotheses]
-    for formula in [*lefts, *rights, *relations, *equation.divisors, *equation.radicands]:
-        _refuse_large_degree(formula)
+    formulas = [*lefts, *rights, *relations, *equation.divisors, *equation.radicands]
+    for formula in formulas:
         if formula.has(I):
             raise InputError(f"expected real numbers, got the square root of a negative number in {as_text(formula)}")
+    size = degree_of(formulas)
+    if size > LARGEST_DEGREE:
+        return _decide_large(equation, lefts, rights, size)
     try:
         ring = FormulaRing([*lefts, *rights, *equation.divisors, *equation.nonzero], relations, equation.radicands)
     except TooLarge as reason:
@@ -185,7 +197,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of a proof in alphabetical order, without those that the hypotheses grant."""
+        """Return the conditions of a proof in alphabetical order, without conditions that are hypotheses."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -236,7 +248,7 @@ def domain_of_text(case: _ClaimCase) -> None:
 
 
 def nearby_witness(case: _ClaimCase) -> None:
-    """Look for a counterexample: among rational points, then among a few points that obey the hypotheses."""
+    """Store a counterexample in ``case``, from rational points or from a few points that obey the hypotheses."""
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
     closed_form = hypotheses.checked(closed_form_witness)
@@ -245,21 +257,22 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that is true for one sign of a root, or on one branch of an inverse function such as asin.
+    """Return "true" for a claim that needs one sign of a root, or one branch of a function such as asin, and has it.
 
-    It is true if the domain of the claim allows no other sign or branch.
+    The domain of the claim must allow no other sign or branch. Return None for any other claim.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
     if case.branches is None:
         return None
-    known = {f"{as_text(formula)} >= 0" for formula in (*case.equation.radicands, *domain.signs(case.ring))}
-    signs = [sign for requirement in case.branches for sign in requirement.text.split(" and ")]
-    return case.confirmed() if all(sign in known for sign in signs) else None
+    known = [(formula, ">= 0") for formula in (*case.equation.radicands, *domain.signs(case.ring))]
+    known += [(formula, "!= 0") for formula in case.equation.divisors]
+    signs = [sign for requirement in case.branches for sign in requirement.conditions]
+    return case.confirmed() if follow(signs, known) else None
 
 
 def entail(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that follows from its hypotheses at all real points; refuse hypotheses that hold nowhere."""
+    """Return the decision on a claim that follows from its hypotheses, or None; refuse hypotheses that hold nowhere."""
     if not case.lacks_evidence:
         return None
     if case.hypotheses.entails(case.numerators):
@@ -269,7 +282,7 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Look for a counterexample among all points that obey the hypotheses."""
+    """Store a counterexample in ``case``, from all points that can be drawn and obey the hypotheses."""
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
@@ -277,7 +290,7 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that is true under a condition that authors often leave out, such as a unit norm."""
+    """Return "conditional" for a claim that is true under a condition that authors often omit, or None."""
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
@@ -289,6 +302,8 @@ def condition(case: _ClaimCase) -> Decision | None:
         needed = case.branches
     if not needed:
         return None
+    if len(needed) == 1:
+        needed = [with_domain(needed[0], case.conditions)]
     return Decision("conditional", (*needed, *case.conditions), tuple(needed), case.counterexample)
 
 
@@ -298,9 +313,22 @@ def leave_open(case: _ClaimCase) -> Decision:
 
 
 STAGES = (
-    nonzero_by_hypothesis, subtract, domain_of_text, prove, nearby_witness, branch, entail, distant_witness, condition,
-    refute, congruence, leave_open,
+    nonzero_by_hypothesis, subtract, domain_of_text, prove, arguments, nearby_witness, branch, entail, distant_witness,
+    condition, refute, congruence, leave_open,
 )  # fmt: skip
+
+
+def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
+    """Return a decision that is conditional if it is true and powers are read for positive bases of unknown sign.
+
+    ``a**b`` may have a value for a negative a too, if b is a whole number; nothing is proven about that.
+    """
+    bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
+    if not bases or decision.verdict != "true":
+        return decision
+    text = range_text([(base, "> 0") for base in bases])
+    required = Requirement("positive_base", text, signs=tuple(bases), strict=tuple(bases))
+    return replace(decision, verdict="conditional", requires=(required,), conditions=(required, *decision.conditions))
 
 
 # -- the branch cut of atan2 ------------------------------------------------------------------------------------------
@@ -324,7 +352,7 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
             if all(holds(need, values) for need in needs):
                 exact = [side.subs(point) for side in sides]
                 witness = Counterexample(tuple(point.items()), place_in_matrix(place, case.shape), *exact)
-                required = Requirement("principal_value", " and ".join(map(as_text, decision.conditions)))
+                required = Requirement("principal_value", " and ".join(condition_texts(decision.conditions)))
                 return replace(decision, verdict="conditional", requires=(required,), counterexample=witness)
     return decision
 
@@ -361,55 +389,59 @@ def _needs(case: _ClaimCase) -> list[Need]:
     """Return the conditions for sides and hypotheses to be real numbers, also for parts that SymPy has cancelled."""
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
-    stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
-    divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is recorded as both
-    stated += [Need(radicand, "> 0" if radicand in divided else ">= 0") for radicand in equation.radicands]
+    stated = _stated_needs(equation)
     return [*needs_of([*case.sides, *hypotheses, *(need.formula for need in stated)]), *stated]
 
 
-def _refuse_large_degree(formula: Expr) -> None:
-    size = _degree(formula, {})
-    if size > LARGEST_DEGREE:
-        raise InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
+def _stated_needs(equation: Equation) -> list[Need]:
+    """Return the needs of the divisors and radicands in the text of a claim."""
+    stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
+    divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is recorded as both
+    return [
+        *stated,
+        *(Need(radicand, "> 0" if radicand in divided else ">= 0") for radicand in equation.radicands),
+    ]
 
 
-def _degree(node: Expr, known: dict[Expr, int]) -> int:
-    """Return an upper bound on the sum of the degrees of numerator and denominator of a formula."""
-    if node not in known:
-        below = [_degree(part, known) for part in node.args]
-        if isinstance(node, Mul):
-            known[node] = sum(below)
-        elif isinstance(node, Pow) and node.exp.is_Rational:
-            known[node] = below[0] * max(1, abs(int(node.exp.p)))
-        elif node.is_Function and len(node.args) == 1 and not node.args[0].is_Symbol:
-            known[node] = max(_multiple(node.args[0]), 1)
-        elif node.is_number:
-            known[node] = 0
-        else:
-            known[node] = max([*below, 1]) if not node.is_Add else max(below)
-    return known[node]
+def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr], size: int) -> Decision:
+    """Return the decision on an equation whose powers are too large to be expanded.
 
-
-def _multiple(argument: Expr) -> int:
-    """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
-
-    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2.
+    Raises
+    ------
+    InputError
+        If it is neither proven with letters for the powers nor refuted.
     """
-    total = 0
-    for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
-        number, atom = term.as_coeff_Mul()
-        constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
-        total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
-    return total
+    refusal = InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
+    if equation.hypotheses or len(lefts) > 1:
+        raise refusal
+    formulas = [lefts[0], rights[0], *equation.divisors, *equation.radicands]
+    shorter = shorter_powers(formulas)
+    needs = _stated_needs(equation)
+    if shorter is not None and degree_of(shorter.formulas) <= LARGEST_DEGREE:
+        left, right, *others = shorter.formulas
+        divided = len(equation.divisors)
+        other = replace(
+            equation, left=left, right=right, divisors=tuple(others[:divided]), radicands=tuple(others[divided:])
+        )
+        decision = _decide(other)
+        if decision.verdict == "true" and known_point([*needs, *needs_of(formulas)]) is not None:
+            conditions = tuple(
+                each.func(each.lhs.xreplace(shorter.bases), 0, evaluate=False) for each in decision.conditions
+            )
+            return replace(decision, conditions=conditions)
+    witness = point_of_difference(lefts[0], rights[0], needs)
+    if witness is None:
+        raise refusal
+    return Decision("false", counterexample=witness)
 
 
 # -- conditions and reasons -------------------------------------------------------------------------------------------
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must be nonzero, by text, without those that never vanish and powers of others.
+    """Return formulas that must be nonzero, by text, without formulas that never vanish or are powers of others.
 
-    ``sin(a)**2 + cos(a)**2`` never vanishes, and ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` only where cos(b) does.
+    ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -425,7 +457,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the formula with the shorter text; a large one is not printed to find out."""
+    """Return the formula with the shorter text, or one that has far fewer parts than the other."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few
@@ -456,9 +488,9 @@ def _branches(
         if within is not None:
             ends = [(end, ">= 0") for end in within.nonnegative if not surely_nonnegative(end)]
             ends += [(end, "> 0") for end in within.positive if not end.is_positive]
-            text = " and ".join(f"{as_text(end)} {sign}" for end, sign in ends)
-            signs = tuple(end for end, _ in ends)
-            return [Requirement("principal_value", text, signs=signs)] if ends else [], within.rings
+            text, signs = range_text(ends), tuple(end for end, _ in ends)
+            required = Requirement("principal_value", text, signs=signs, strict=within.positive)
+            return [required] if text else [], within.rings
     return branches, ()
 
 

@@ -1,6 +1,9 @@
 """Functions, roots, fractions, derivatives and integrals in LaTeX."""
 
-from symrot.checker.claim.tree import Node, number, product, walk
+from itertools import takewhile
+
+from symrot.checker.claim.functions import BUILT_IN
+from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
@@ -16,40 +19,69 @@ class CalculusPart(NamesPart):
 
     def trigonometric(self, function: tree.Node) -> Node:
         power = None
+        name = FUNCTIONS[function.text]
         if raised := self.script("^"):
             power = self.argument(raised.inside)
-            if power.kind != "number":
-                raise self.fail("a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)", function)
+            sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
+            is_inverse = power == negated(number(1)) and f"a{name}" in BUILT_IN
+            if is_inverse and not self.doubtful("inverse", function, self.end_of_next(), sure):
+                name, power = f"a{name}", None
+            elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):
+                raise self.fail(sure, function)
         opening = self.peek()
         if opening.text in CLOSING or opening.kind == "row":
             argument = self.bracket(self.next())
         else:
-            argument = self.loose_argument(function)
-        node = Node("call", FUNCTIONS[function.text], (argument,))
+            argument, own = self.loose_argument(function)
+            power = own if power is None else power if own is None else product([power, own])
+        node = Node("call", name, (argument,))
         return node if power is None else Node("power", None, (node, power))
 
-    def loose_argument(self, function: tree.Node) -> Node:
-        """Read the argument of a sine without brackets, such as ``2\theta``; refuse an ambiguous argument."""
-        factors = [self.factor()] if not self.at("-") else []
-        if not factors or factors[0].kind == "power":
-            raise self.fail(f"brackets around the argument of {function.text}")
-        if factors[0].kind == "number" or (factors[0].kind == "product" and not any(
-            piece.kind in ("name", "call") for _, piece in walk(factors[0]))):  # fmt: skip
-            if not self.starts_factor():
-                return factors[0]
-            factors.append(self.factor())
+    def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
+        r"""Read an argument without brackets, such as ``2\theta``; return its tree and an exponent of the whole sine.
+
+        The exponent is None unless a power after the argument is read as one of the sine: ``\sin\theta^2``.
+        """
+        expected = f"brackets around the argument of {function.text}"
+        if self.at("-") and self.flips is None:
+            raise self.fail(expected)
+        negative = self.take("-")
+        factors, power = [self.factor()], None
+        is_power = factors[0].kind == "power"
+        if is_power and self.doubtful("power of argument", function, self.peek().start, expected):
+            factors, power = [factors[0].args[0]], factors[0].args[1]
+        only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
+            piece.kind in ("name", "call") for _, piece in walk(factors[0])))  # fmt: skip
+        if power is None and not (only_number and not self.starts_factor()):
+            factors += self.further_factors(function, expected, only_number)
+        argument = product(factors)
+        return (negated(argument) if negative else argument), power
+
+    def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
+        """Read and return the factors after the first one in an argument without brackets."""
+        factors = [self.factor()] if required else []
+        first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
             factors.append(self.factor())
         follower = self.peek()
-        if follower.text == "[" and self.holds_skew_matrix():
-            return product(factors)
-        ambiguous = is_letter(follower) or follower.text in ("\\frac", "\\sqrt", "(", "[", "\\pi", "/")
         free = self.is_spaced() or (self.integrals and self.differential())
-        if follower.text == "/" and self.peek(1).text in FUNCTIONS:
-            return product(factors)  # \sin\phi/\cos\theta
-        if follower.text == "/" or (ambiguous and not free):
-            raise self.fail(f"brackets around the argument of {function.text}", follower)
-        return product(factors)
+        if follower.text == "[" and self.holds_skew_matrix():
+            return factors
+        if follower.text == "/":
+            below = self.peek(1)
+            if below.text in FUNCTIONS:
+                return factors  # \sin\phi/\cos\theta
+            usual = below.kind == "number"  # \cos\theta/2
+            if self.doubtful("slash after argument", function, below.start + 1, expected, follower) != usual:
+                self.next()
+                factors.append(Node("inv", None, (self.factor(),)))
+            return factors
+        letters = is_letter(follower) or follower.text == "\\pi"
+        if not free and (letters or follower.text in ("\\frac", "\\sqrt", "(", "[")):
+            tight = first.kind == "letter" and first.start + 1 == follower.start and letters  # \cos kx
+            if self.doubtful("argument", function, self.end_of_next(), expected, follower) != tight:
+                factors.append(self.factor())
+        return factors
 
     def holds_skew_matrix(self) -> bool:
         r"""Return whether the bracket at the cursor is a skew matrix, ``[a\times]`` or ``[a]_\times``."""
@@ -78,8 +110,25 @@ class CalculusPart(NamesPart):
             return product([*digits])
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
+    def leibniz(self) -> Node | None:
+        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``, and return it; otherwise None."""
+        texts = [item.text for item in self.items[self.index : self.index + 8]]
+        slash = texts.index("/") if "/" in texts else 0
+        below = self.index + slash + 1
+        if not is_d(self.peek()) or slash < 2 or not is_d(self.peek(slash + 1)) or self.items[below + 1].text != "t":
+            return None
+        item = self.next()
+        order = self.order()
+        operand = self.base(self.next())
+        if not self.take("/"):
+            raise self.fail("one name between d and /dt, or \\frac{d}{dt}(..)")
+        self.index += 2
+        if self.order() != order:
+            raise self.fail(f"a derivative of order {order} both above and below the slash", item)
+        return self.derivative(operand, order, item)
+
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
-        """Read a derivative written as a fraction: ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``."""
+        r"""Read a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
         order, operand = self.inside(fraction.above, self.differentiated)
         if "d" in self.names:
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
@@ -96,16 +145,16 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        """Read the numerator ``d^n X`` of a derivative.
+        """Read the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
 
-        Return the order n and X, or None for X if it follows the fraction.
+        X is None if it follows the fraction.
         """
         self.next()
         order = self.order()
         return order, None if self.peek().kind == "end" else self.expression()
 
     def variables(self) -> list[Node]:
-        """Read the denominator of a derivative, such as ``dx^2 dy``; return the variables."""
+        """Read the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
         variables: list[Node] = []
         while self.peek().kind != "end":
             if not is_d(self.next()):
@@ -133,7 +182,22 @@ class CalculusPart(NamesPart):
             self.index += 3
         return derivative
 
+    def over_body(self) -> Node:
+        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe; return its tree."""
+        self.script("_")
+        self.integrals += 1
+        integrand = number(1) if self.differential() else self.expression()
+        self.integrals -= 1
+        if not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        self.index += 2
+        return Node("call", "integral_over_body", (integrand,))
+
     def integral(self, sign: tree.Node) -> Node:
+        if not self.has_limits():
+            while self.take("\\int"):
+                pass  # \\iiint_V
+            return self.over_body()
         limits = [(self.limit("_"), self.limit("^"))]
         while self.take("\\int"):
             limits.append((self.limit("_"), self.limit("^")))
@@ -147,6 +211,13 @@ class CalculusPart(NamesPart):
             self.next()
             ranges.append(Node("list", ("(", ")"), (self.base(self.next()), lower, upper)))
         return Node("call", "integrate", (integrand, *ranges))
+
+    def has_limits(self) -> bool:
+        """Return whether limits follow an integral sign; the name of a body under it is no limit."""
+        lower = self.peek()
+        marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
+        is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")
+        return bool(marks) and not (is_body and "^" not in marks)
 
     def limit(self, mark: str) -> Node:
         limit = self.script(mark)

@@ -1,6 +1,7 @@
 """The cursor of the LaTeX checker: the place in a formula, with the names that its claim declares."""
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from string import whitespace
 from typing import ClassVar
@@ -8,19 +9,33 @@ from typing import ClassVar
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
 from symrot.checker.claim.tree import Node
+from symrot.checker.latex.macros import expanded
+from symrot.checker.latex.shorthand import shorthands
+from symrot.checker.typed.cursor import Doubt
 from symrot.errors import InputError, complaint
 from symrot.latex import cursor, tree
 from symrot.latex.reader import read
-from symrot.latex.tokens import GREEK, tokens
+from symrot.latex.tokens import GREEK, Token, tokens
 
-__all__ = ["CLOSING", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
+__all__ = ["CLOSING", "JOINTS", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
 
 CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
 TIME = Node("name", "t")
 UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
 MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "inverse", "transpose", "eye", "diag", "qmul",
                 "dcm_of", "hstack", "adjugate", *ROTATIONS)  # fmt: skip
-MARKS = frozenset("-+*/=()[]{}&|,−·×⋅")
+MARKS = frozenset("-+*/=<>:;()[]{}&|,−·×⋅")
+TEXT_FONTS = ("\\text", "\\mbox", "\\textrm")
+JOINTS = ("and", "or", "where", "with", "so that", "thus", "hence", "i.e", "if", "for", "when", "since", "so")
+"""Fonts of the text around a formula, and words there between two equations."""
+
+_COMMANDS = {character: f"\\{name}" for name, character in GREEK.items()} | {
+    "π": "\\pi",
+    "φ": "\\phi",
+    "ε": "\\epsilon",
+}
+"""Greek letter -> its command."""
+
 WRAPPERS = (
     ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
     *((f"\\begin{{{name}}}", f"\\end{{{name}}}") for name in ("equation*", "equation", "displaymath", "math")),
@@ -58,7 +73,7 @@ class Names:
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column vector, of which bars mean the length (of a matrix, the determinant)."""
+        """Return whether a matrix is a column vector: then bars mean its length, otherwise a determinant."""
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
@@ -93,35 +108,112 @@ class Cursor(cursor.Cursor):
         "\\equiv": "=", "\\ast": "*", "−": "-", "·": "\\cdot", "×": "\\times", "⋅": "\\cdot",
     }  # fmt: skip
     depth = integrals = 0
+    both_signs = False
 
-    def __init__(self, source: str, where: str, names: Names) -> None:
+    def __init__(
+        self, source: str, where: str, names: Names, flips: Collection[tuple[str, int]] | None = None,
+        upper: bool = True,
+    ) -> None:  # fmt: skip
         place = f"{where}: " if where else ""
         if not isinstance(source, str) or not source.strip():
             raise InputError(f"{place}expected LaTeX of an equation, got empty text")
         if len(source) > LONGEST_TEXT:
             raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-        self.source, self.where, self.names = source, where, names
+        self.source, self.where, self.names, self.flips = source, where, names, flips
+        self.doubts: list[Doubt] = []
         self.timed = set(names.functions)
         self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
         self.notes: list[str] = []
         self.crossed: set[str] = set()  # names without a mark that are vectors by their use
-        pieces = tokens(source, *_unwrapped(source))
+        start, stop = _unwrapped(source)
+        outside = (source[:start] + source[stop:]).strip(whitespace + "$.,;\\[]()")
+        if outside and "begin{" not in outside:
+            self.notes.append("the words around the formula are not read")
+        pieces = [
+            piece._replace(kind="command", text=_COMMANDS[piece.text]) if piece.text in _COMMANDS else piece
+            for piece in expanded(tokens(source, start, stop), source, where)
+        ]
+        if {"\\pm", "\\mp"} & {piece.text for piece in pieces}:
+            if flips is None:
+                sign = next(piece for piece in pieces if piece.text in ("\\pm", "\\mp"))
+                raise complaint(source, where, sign.start, "two claims, one for each sign,")
+            self.both_signs = True
+            pieces = list(_with_signs(pieces, upper))
         for piece, after in zip(pieces, [*pieces[1:], pieces[-1]], strict=True):
             if piece.text == "." and after.kind in ("line", "close", "space"):
                 continue  # the end of a line
             if piece.text not in MARKS and (piece.kind == "mark" or piece.text == "."):
-                raise complaint(source, where, source.index(piece.text, piece.start), "LaTeX of mathematics")
+                instead = "the difference of two values instead of \\left. .. \\right|"
+                alone = "one formula, without the words around it" if piece.text == "$" else "LaTeX of mathematics"
+                expected = instead if piece.kind == "left" else alone
+                raise complaint(source, where, source.index(piece.text, piece.start), expected)
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+        self.frames = _frames(pieces)
+        self.short = shorthands(pieces, {*names.symbols, *names.functions, *names.matrices, *names.others})
+        if self.short and flips is not None and self.doubtful("shorthand", pieces[0], pieces[0].start + 1, ""):
+            self.short = {}
         super().__init__(source, where, read(source, where, pieces))
+
+    def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
+        """Record a place with two readings; return whether it has its less usual meaning.
+
+        Raises
+        ------
+        InputError
+            If the text must have a single reading; the message asks for ``expected`` at ``place``, by default ``item``.
+        """
+        if self.flips is None:
+            raise self.fail(expected, place or item)
+        doubt = Doubt((kind, item.start), self.source[item.start : stop].strip())
+        if doubt.key not in [known.key for known in self.doubts]:
+            self.doubts.append(doubt)
+        return doubt.key in self.flips
+
+    def words(self, item: tree.Node) -> str:
+        r"""Return the words of an item such as ``\text{for all}``; an empty text for a formula and for a name."""
+        if not isinstance(item, tree.Font) or item.text not in TEXT_FONTS:
+            return ""
+        inside = item.inside
+        end = inside.end if isinstance(inside, tree.Row) else inside.start + 1
+        words = self.source[inside.start : end].strip("{} ~,;.:").lower()
+        return words if " " in words or "(" in words or words in JOINTS else ""
+
+
+def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
+    r"""Yield tokens with the upper or the lower sign in place of ``\pm`` and ``\mp``."""
+    signs = {"\\pm": "+-", "\\mp": "-+"}
+    for piece in pieces:
+        both = signs.get(piece.text)
+        yield Token("mark", both[not upper], piece.start) if both else piece
+
+
+def _frames(pieces: Sequence[Token]) -> set[str]:
+    r"""Return the letters that mark the frames of names, such as A and B in ``{}^A x = R\,{}^B x``."""
+    texts = [piece.text for piece in pieces]
+    frames = set()
+    for place in range(len(texts) - 3):
+        if texts[place : place + 2] == ["{", "}"] and texts[place + 2] in ("^", "_"):
+            rest = [text for text in texts[place + 3 :] if text not in ("{", *UPRIGHT, "\\mathcal", "\\mathbf")]
+            frames.add(rest[0])
+    return frames
+
+
+_INLINE = re.compile(r"\$\$.+?\$\$|(?<!\$)\$[^$]+\$(?!\$)|(?<!\\)\\\(.+?\\\)|(?<!\\)\\\[.+?\\\]", re.DOTALL)
+"""A formula between dollar signs or brackets, in a text."""
 
 
 def _unwrapped(source: str) -> tuple[int, int]:
     """Return where the formula starts and ends, without the dollar signs around it and a full stop after it."""
     start, end = 0, len(source)
+    formulas = list(_INLINE.finditer(source))
+    if len(formulas) == 1 and not {"=", "<", ">"} & {*source[: formulas[0].start()], *source[formulas[0].end() :]}:
+        start, end = formulas[0].span()
     for opening, closing in WRAPPERS:
         if source.startswith(opening, start) and source.endswith(closing, start + len(opening), end):
             inside = source[start + len(opening) : end - len(closing)]
-            end = start + len(opening) + len(inside.rstrip(whitespace + ".,;"))
-            start = end - len(inside.rstrip(whitespace + ".,;").lstrip())
+            shorter = inside.rstrip(whitespace + ".,;")
+            shorter = inside[: len(shorter) + shorter.endswith("\\")]  # \\, is a space
+            end = start + len(opening) + len(shorter)
+            start = end - len(shorter.lstrip())
     return start, end

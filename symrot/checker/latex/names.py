@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, is_tensor
 from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
@@ -13,7 +13,21 @@ from symrot.latex import tree
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
 OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag"}
-SPELLED = {"tr": "trace", "trace": "trace", "Tr": "trace"} | {name: name for name in BUILT_IN}
+SPELLED = {
+    "tr": "trace", "Tr": "trace", "Det": "det", "Diag": "diag", "Atan2": "atan2", "ATAN2": "atan2", "arctan2": "atan2",
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "vers": "vers", "adj": "adjugate",
+    **{name: name for name in BUILT_IN},
+}  # fmt: skip
+"""Name in upright letters -> the function that it means."""
+
+PART = "1:3"
+"""The subscript of the vector part of a quaternion with the components q_1, q_2, q_3."""
+
+MARKS_IN_SUBSCRIPTS = {
+    "+": "plus", "-": "minus", "*": "star", "\\ast": "star", "\\perp": "perp", "\\parallel": "par", "\\|": "par",
+    "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", ":": ":", "\\rm": "", "\\circ": "circ",
+}  # fmt: skip
+"""Mark in a subscript -> the letters for it in a name."""
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
 """Letters of torques and forces, of which a sum without limits is the total."""
 
@@ -26,25 +40,54 @@ class NamesPart(SumsPart):
     """The methods of the LaTeX reader that read names, and functions that are called by name."""
 
     def letter(self, item: tree.Node) -> Node:
+        if item.start in self.short:
+            return self.cosine_or_sine(item)
         return self.named(item.text.removeprefix("\\"), item)
+
+    def cosine_or_sine(self, item: tree.Node) -> Node:
+        r"""Read what follows the letter in a short form such as ``c_\theta``; return the cosine or sine."""
+        function, angles = self.short[item.start]
+        power = None if angles else self.script("^")
+        if angles:
+            self.script("_")
+            terms = tuple(Node("name", self.resolved(*angle.partition("_")[::2])) for angle in angles)
+        else:
+            terms = (self.letter(self.next()),)
+        if item.start == min(self.short):
+            letters = f"{item.text}_{{..}}" if angles else f"{item.text}\\{terms[0].value}"
+            meaning = " + ".join(str(term.value) for term in terms)
+            words = f"1 - cos({meaning})" if function == "vers" else f"{function}({meaning})"
+            self.notes.append(f"{letters} is read as {words}, and so are letters like it")
+        angle = terms[0] if len(terms) == 1 else Node("sum", None, terms)
+        value = Node("call", function, (angle,))
+        if function == "vers":
+            value = sum_of([number(1), negated(Node("call", "cos", (angle,)))])
+        return value if power is None else self.raised(value, power.inside)
 
     def named(self, name: str, item: tree.Node) -> Node:
         """Read the subscript, primes and ``(t)`` that follow a name; return the tree of the whole name."""
+        if name == "Sigma" and self.peek().text.removeprefix("\\") in TOTALS and self.flips is not None:
+            return self.total(item)
         if name in ("Delta", "delta") and name not in self.names and not self.at("_", "'"):
             follower = self.peek()
             if is_letter(follower):
-                raise self.fail(f"\\{name}_{{..}} for a change, or \\cdot for a product,", follower)
+                return self.change(name, item)
         primes, subscript = 0, ""
         while mark := self.script("_") or self.script("'"):
             if mark.text == "'":
                 primes = len(mark.inside.text)
             else:
                 subscript = self.subscript(mark)
+        if subscript == PART:
+            entries = tuple(Node("name", self.resolved(name, digit)) for digit in "123")
+            return Node("call", "Matrix", (Node("list", ("[", "]"), entries),))
         known = self.resolved(name, subscript)
         if known.partition("_prime")[0] in ROTATIONS and self.at("(") and known not in self.names:
             known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
         if known in ROTATIONS and known not in self.names and self.at("("):
             return self.called(known)
+        if name == "S" and not subscript and (skew := self.skew_of_vector()) is not None:
+            return skew
         if primes and (known in self.names.functions or self.called_with_time()):
             self.take_time_call(known)
             return self.derivative(Node("name", known), primes, item)
@@ -52,6 +95,36 @@ class NamesPart(SumsPart):
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
         return self.vector(known) if known in self.crossed else Node("name", known)
+
+    def skew_of_vector(self) -> Node | None:
+        r"""Read the bracket of ``S(\omega)`` and return the skew matrix; return None for any other bracket."""
+        inner = self.peek(1)
+        is_vector = inner.text in ("\\omega", "\\Omega", *VECTOR_MARKS) and self.peek(2).text == ")"
+        if not self.at("(") or not is_vector or "S" in self.names or self.flips is None:
+            return None
+        self.next()
+        vector = self.base(self.next())
+        self.expect(")")
+        self.note_vector(vector)
+        self.notes.append("S(..) is read as the skew matrix of a vector")
+        return Node("call", "skew", (vector,))
+
+    def change(self, name: str, item: tree.Node) -> Node:
+        r"""Read a change of a quantity, ``\Delta t``, and return the node of the one name Delta_t."""
+        follower = self.peek()
+        product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
+        if self.flips is None:
+            raise self.fail(product_or_change, follower)
+        if self.doubtful("change", item, self.end_of_next(), product_or_change):
+            return Node("name", name)
+        quantity = self.letter(self.next())
+        if quantity.kind != "name":
+            raise self.fail(f"a name after \\{name}", follower)
+        return Node("name", f"{name}_{quantity.value}")
+
+    def end_of_next(self) -> int:
+        """Return the position of the end of the next item, for an excerpt."""
+        return max(self.peek(1).start, self.peek().start + 1)
 
     def refuse_call(self) -> None:
         """Raise InputError for ``f(x)`` and ``f(0)``, which may be a product or the value of a function."""
@@ -64,7 +137,7 @@ class NamesPart(SumsPart):
         inside = mark.inside
         if inside.kind == "number" and self.is_cut(inside):
             raise self.fail("braces around a subscript of several digits", inside)
-        group = isinstance(inside, tree.Row | tree.Font)
+        group = isinstance(inside, tree.Row | tree.Font) or inside.text in MARKS_IN_SUBSCRIPTS
         pieces = "".join(self.pieces((inside,))) if group or inside.kind == "number" or is_letter(inside) else ""
         if not pieces:
             raise self.fail("a subscript of letters and digits", inside)
@@ -77,19 +150,23 @@ class NamesPart(SumsPart):
                 yield from self.pieces(item.items)
             elif isinstance(item, tree.Font) and item.text in (*UPRIGHT, "\\text"):
                 yield from self.pieces((item.inside,))
-            elif item.text in (",", "/"):
-                yield "_"
+            elif item.text in MARKS_IN_SUBSCRIPTS:
+                yield MARKS_IN_SUBSCRIPTS[item.text]
             elif isinstance(item, tree.Scripts) and {script.text for script in item.scripts} == {"'"}:
                 yield from self.pieces((item.base,))
                 yield "_prime" * len(item.scripts[0].inside.text)
+            elif isinstance(item, tree.Scripts) and {script.text for script in item.scripts} == {"_"}:
+                yield from self.pieces((item.base, item.scripts[0].inside))
+            elif isinstance(item, tree.Accent | tree.Font) and item.text in VECTOR_MARKS:
+                yield from self.pieces((item.inside,))
             elif (item.kind == "number" or is_letter(item)) and "." not in item.text:
                 yield item.text.removeprefix("\\")
-            elif item.text != "\\rm" and item.kind != "space":
+            elif item.kind != "space":
                 place = item.scripts[0] if isinstance(item, tree.Scripts) else item
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return the declared name with a subscript, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
+        """Return a name with its subscript as it is declared, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
@@ -121,11 +198,13 @@ class NamesPart(SumsPart):
         self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Read a defined vector or matrix with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``."""
+        r"""Read a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return its node, as a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
         node = self.under(mark, self.symbol)
+        if node.kind == "call" and node.value == "Matrix":
+            return node
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:
@@ -137,7 +216,7 @@ class NamesPart(SumsPart):
         return node
 
     def total(self, sign: tree.Node) -> Node:
-        r"""Read ``\sum M_x``, the total of all torques or forces, as the name M_x."""
+        r"""Read ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
             raise self.fail("the terms of a sum with +", sign)
@@ -145,7 +224,7 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Return the name of a vector or tensor that no definition gives components."""
+        """Record a name as a vector or tensor that still needs components, and return its node, marked with MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -155,9 +234,9 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read a name whose mark is part of the name: ``\bar I`` is another symbol than ``I``.
+        r"""Read a name whose mark is part of the name, and return its node: ``\bar I`` is another symbol than ``I``.
 
-        A tilde over a vector means its skew matrix, and a bar over a vector is part of its name.
+        A tilde over a vector means its skew matrix; a bar over a vector is part of its name.
         """
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)
@@ -169,7 +248,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Read the formula under a mark, with the subscript and primes after the mark: ``\dot{\mathbf{H}}_G``."""
+        r"""Return what ``read`` reads under a mark, with the subscript and primes after it: ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)
@@ -178,7 +257,7 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Read a letter, a number or a command, or a symbol with a mark such as a hat."""
+        """Read a letter, a number or a command, or a symbol with a mark such as a hat; return its tree."""
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
             return self.base(item)
@@ -187,7 +266,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\") + ending, item)
 
     def spelled(self, font: tree.Font) -> Node:
-        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``: a built-in function, or a name of several letters."""
+        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``; return a call, or a name of several letters."""
         node = self.under(font, lambda: self.word(font))
         if node.kind == "call":
             return self.called(str(node.value))
@@ -195,7 +274,7 @@ class NamesPart(SumsPart):
         return node
 
     def word(self, font: tree.Font) -> Node:
-        """Read letters and digits, with a subscript and primes; a built-in function becomes a call."""
+        """Read letters and digits, with a subscript and primes; return a name, or the call of a built-in function."""
         name = ""
         while self.peek().kind in ("letter", "number"):
             name += self.next().text
@@ -211,7 +290,7 @@ class NamesPart(SumsPart):
         return self.called(OPERATORS[item.text])
 
     def called(self, name: str) -> Node:
-        """Read the argument of a function: its arguments in brackets, or a single factor without brackets."""
+        """Read the arguments of a function in brackets, or one factor without brackets; return the call."""
         opening = self.peek()
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))

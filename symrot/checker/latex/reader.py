@@ -4,25 +4,43 @@ Where usage is ambiguous (``\\sin\\theta/2``, ``\\sin^{-1}``, ``a/bc``, ``x_12``
 asks for brackets and does not choose. The text of the claim shows how the LaTeX was read.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import Chain, Reading, Relation, read_expression, read_relation
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.reader import (
+    Chain,
+    Reading,
+    Relation,
+    distinct_readings,
+    each_reading,
+    read_expression,
+    read_relation,
+)
+from symrot.checker.claim.tree import Node, sum_of, text, walk
 from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
-from symrot.checker.latex.cursor import TIME, UPRIGHT, Names, is_letter
+from symrot.checker.latex.cursor import JOINTS, TIME, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
-from symrot.checker.latex.sums import FUNCTIONS
+from symrot.checker.latex.sums import FUNCTIONS, SIGNS
 from symrot.errors import InputError
 from symrot.latex import tree
 
-__all__ = ["Equation", "Names", "latex_reading", "read_latex", "read_latex_formula"]
+__all__ = ["Equation", "Names", "latex_readings", "read_latex", "read_latex_formula"]
 
-ALIGNED = ("align", "aligned", "gather", "gathered", "eqnarray", "split")
+Line = tuple[list[str], list[Node]]
+"""The signs of a chain, and its sides."""
+
+ALIGNED = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
+           "multline", "array")  # fmt: skip
 """Environments whose lines hold equations."""
+
+AROUND = ("equation", "subequations", "displaymath", "math")
+"""Environments with one formula, or with an environment of lines in them."""
+
+SEPARATORS = (",", ";", "\\\\")
+"""Marks between two equations."""
 
 
 @dataclass(frozen=True)
@@ -57,14 +75,17 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
     >>> read_latex(r"\\ddot{\\theta} = -\\frac{g}{l}\\sin\\theta").text
     'diff(theta(t), t, t) == -g/l*sin(theta(t))'
     """
-    (sides,), reader = _read(source, where, names or Names(), _Interpreter.equation)
+    ((_, sides),), reader = _read(source, where, names or Names(), _Interpreter.equation)
     sides, vectors = without_marks([_timed(side, reader.timed) for side in sides], reader.vectors)
     claim = " == ".join(map(text, sides))
     return Equation(read_relation(claim, where), claim, used_vectors(sides, vectors))
 
 
-def latex_reading(source: str, names: Names | None = None) -> Reading:
-    """Return the equations of a LaTeX text: chains ``a = b = c``, with commas between them or on lines of their own.
+def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
+    r"""Return the readings of a LaTeX text, the usual one first.
+
+    A text may have chains ``a = b = c``, with commas between them or on lines of their own. A text with ``\\pm`` is
+    read twice: with the upper signs, then with the lower ones.
 
     Raises
     ------
@@ -73,33 +94,46 @@ def latex_reading(source: str, names: Names | None = None) -> Reading:
 
     Examples
     --------
-    >>> reading = latex_reading(r"a = b = c, \\quad d = e")
+    >>> (reading,) = latex_readings(r"a = b = c, \quad d = e")
     >>> [len(chain.sides) for chain in reading.lines]
     [3, 2]
+    >>> [reading.flipped for reading in latex_readings(r"\theta = \cos^{-1} x")]
+    [(), ('\\cos^{-1} x',)]
     """
-    lines, reader = _read(source, "", names or Names(), _Interpreter.equations)
-    sides, vectors = without_marks([_timed(side, reader.timed) for line in lines for side in line], reader.vectors)
+    return distinct_readings(each_reading(partial(_reading, source, names or Names())))
+
+
+def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
+    """Return the reading of a LaTeX text in which the doubtful places ``flips`` have their less usual meaning."""
+    lines, reader = _read(source, "", names, _Interpreter.equations, flips)
+    if reader.both_signs:
+        lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
+    timed = [_timed(side, reader.timed) for _, sides in lines for side in sides]
+    sides, vectors = without_marks(timed, reader.vectors)
     remaining = iter([read_expression(text(side)) for side in sides])
-    chains = [tuple(next(remaining) for _ in line) for line in lines]
     return Reading(
-        tuple(Chain(("==",) * (len(chain) - 1), chain) for chain in chains),
+        tuple(Chain(tuple(signs), tuple(next(remaining) for _ in own), reader.both_signs) for signs, own in lines),
         plain=True,
+        doubts=tuple(reader.doubts),
         notes=(*dict.fromkeys(reader.notes), *_on_constants(sides, vectors)),
         timed=frozenset(reader.timed),
         vectors=vectors,
+        flipped=tuple(dict.fromkeys(doubt.excerpt for doubt in reader.doubts if doubt.key in flips)),
     )
 
 
 def _read(
-    source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[list[Node]]]"
-) -> "tuple[list[list[Node]], _Interpreter]":
-    """Return what ``read`` reads from a LaTeX text, and the reader after it.
+    source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
+    flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
+) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
+    """Return the lines that ``read`` reads from a LaTeX text, and the interpreter that has read them.
 
-    A name without a mark may turn out to be a vector after other places with it have been read; then it is read again.
+    If a name without a mark turns out to be a vector only late in the text, the text is read again. Without ``flips``,
+    a text that has two readings is refused.
     """
     crossed: frozenset[str] = frozenset()
     while True:
-        reader = _Interpreter(source, where, names)
+        reader = _Interpreter(source, where, names, flips, upper)
         reader.crossed = set(crossed)
         try:
             lines = read(reader)
@@ -133,7 +167,7 @@ def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector,
     InputError
         As :func:`read_latex`.
     """
-    ((formula,),), reader = _read(source, where, Names(), _Interpreter.formula)
+    ((_, (formula,)),), reader = _read(source, where, Names(), _Interpreter.formula)
     (formula,), vectors = without_marks([_timed(formula, reader.timed)], reader.vectors)
     return text(formula), used_vectors([formula], vectors)
 
@@ -159,7 +193,7 @@ class _Interpreter(CalculusPart):
         **dict.fromkeys(DOTS, CalculusPart.dotted),
         **dict.fromkeys(FUNCTIONS, CalculusPart.trigonometric),
         **dict.fromkeys(OPERATORS, CalculusPart.operator),
-        **dict.fromkeys((*UPRIGHT, "\\operatorname"), CalculusPart.spelled),
+        **dict.fromkeys((*UPRIGHT, "\\operatorname", "\\text"), CalculusPart.spelled),
         "\\sum": CalculusPart.total,
         "\\frac": CalculusPart.fraction,
         "\\sqrt": CalculusPart.root,
@@ -167,72 +201,132 @@ class _Interpreter(CalculusPart):
         "table": CalculusPart.environment,
     }
 
-    def formula(self) -> list[list[Node]]:
-        """Read one formula without an equals sign."""
+    def formula(self) -> list[Line]:
+        """Read one formula without an equals sign; return it as the only side of the only line."""
         formula = self.expression()
         if self.peek().kind != "end":
             raise self.fail("one formula without '='" if self.at("=") else "an operator or the end")
-        return [[formula]]
+        return [([], [formula])]
 
-    def equation(self) -> list[list[Node]]:
-        """Read one equation."""
-        (sides,) = self.chains()
-        return [sides]
+    def equation(self) -> list[Line]:
+        """Read one equation; return it as the only line."""
+        (line,) = self.chains()
+        return [line]
 
-    def equations(self) -> list[list[Node]]:
-        """Read equations; in an environment of several lines, a line with ``=`` first continues the line before it."""
+    def equations(self) -> list[Line]:
+        """Read equations and return them as lines; a line that starts with ``=`` continues the line before it."""
+        self.items = [item for item in self.items if item.text != "&"]
+        while isinstance(self.peek(), tree.Row) and self.peek(1).kind == "end":  # \boxed{..}
+            self.enter(self.peek())
         table, after = self.peek(), self.peek(1)
+        while isinstance(table, tree.Table) and after.kind == "end" and table.name.rstrip("*") in AROUND:
+            self.enter(table.lines[0][0])
+            table, after = self.peek(), self.peek(1)
         if not (isinstance(table, tree.Table) and table.name.rstrip("*") in ALIGNED and after.kind == "end"):
-            return self.chains(",")
-        chains: list[list[Node]] = []
-        for line in table.lines:
-            items = [item for cell in line for item in cell.items]
-            while items and items[-1].text in (",", "."):
-                items.pop()
-            if all(item.kind == "space" for item in items):
-                continue
-            row = tree.Row(tuple(items), line[0].start, line[-1].end)
-            continued = chains.pop() if chains and items[0].text == "=" else None
-            chains += self.inside(row, partial(self.chains, ",", continued))
-        return chains
+            return self.chains(SEPARATORS)
+        lines: list[Line] = []
+        for items, is_open in _rows(table):
+            row = tree.Row(items, items[0].start, items[-1].start + 1)
+            continued = lines.pop() if lines and (items[0].text in SIGNS or is_open) else None
+            lines += self.inside(row, partial(self.chains, SEPARATORS, continued))
+        return lines
 
-    def chains(self, between: str = "", sides: list[Node] | None = None) -> list[list[Node]]:
-        """Read chains ``a = b = c`` up to the end; ``sides`` are the sides of the first on the line before."""
-        chains = []
+    def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
+        """Read and return chains ``a = b = c`` up to the end; ``line`` is the part of the first chain read so far."""
+        lines: list[Line] = []
         while True:
-            sides = [self.head() or self.expression()] if sides is None else sides
-            if not self.at("="):
+            if line is None:
+                line = [], [self.head() or self.expression()]
+            signs, sides = line
+            if signs and not self.at(*SIGNS):  # a line that starts with a plus sign
+                sides[-1] = sum_of([sides[-1], self.expression()])
+            elif not self.at(*SIGNS) or (self.flips is None and not self.at("=")):
                 raise self.fail("an operator or '='" if self.peek().kind != "end" else "'=' and a right side")
-            while self.at("="):
+            while self.at(*SIGNS):
                 if len(sides) > 1 and not between:
                     raise self.fail("one '=' in a claim, not a chain of them")
-                self.next()
+                signs.append(SIGNS[self.next().text])
                 sides.append(self.expression())
-            chains.append(sides)
-            if self.peek().kind == "end":
-                return chains
-            if not (between and (self.take(between) or self.at("\\\\"))):
+            lines.append(line)
+            if self.peek().kind == "end" or (between and self.is_remark()):
+                return lines
+            if not (between and (self.at(*between) or self.is_joint())):
                 raise self.fail("an operator or the end")
-            while self.take("\\\\"):
-                pass
-            sides = None
+            while (self.at(*between) or self.is_joint()) and not self.is_remark():
+                self.next()
+            if self.peek().kind == "end" or self.is_remark():
+                return lines
+            line = None
+
+    def is_joint(self) -> bool:
+        r"""Return whether the next item is a word between two equations, such as ``\text{and}``."""
+        return self.words(self.peek()) in JOINTS
+
+    def is_remark(self) -> bool:
+        r"""Return whether words without an equation follow, such as ``\text{for all } x``; a note says so."""
+        rest = self.items[self.index :]
+        if not self.words(self.peek()) or any(item.text in SIGNS for item in rest):
+            return False
+        self.notes.append(f"{self.source[self.peek().start : rest[-1].start].strip()} is not read")
+        return True
 
     def head(self) -> Node | None:
-        r"""Read the head of a matrix, such as ``R(\phi) =`` before its entries, as the name R; or return None."""
-        place = 2 if isinstance(self.peek(1), tree.Script) else 1
-        texts = [item.text for item in self.items[self.index + place :]]
+        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix; return the name R.
+
+        Brackets around the head, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such head: then
+        ``R(\phi)`` is a product.
+        """
+        opened = 1 if self.at("[") else 0
+        named = 2 if isinstance(self.peek(opened + 1), tree.Script) else 1
+        first = self.index + opened + named
+        texts = [item.text for item in self.items[first:]]
         end = texts.index(")") if ")" in texts else 0
-        rest = self.items[self.index + place + end + 1 :]
-        is_matrix = any(item.kind == "table" or item.text == "\\times" for item in rest)
-        if texts[:1] != ["("] or not is_letter(self.peek()) or texts[end + 1 : end + 2] != ["="] or not is_matrix:
+        if texts[:1] != ["("] or not is_letter(self.peek(opened)) or texts[1 : end + 1] == ["t", ")"]:
             return None
-        inside = self.items[self.index + place + 1 : self.index + place + end]
-        if texts[1 : end + 1] == ["t", ")"] or not all(is_letter(i) or i.text in (",", *VECTOR_MARKS) for i in inside):
+        if texts[end + 1 : end + 2 + opened] != [*"]"[:opened], "="]:
             return None
+        inside = self.items[first + 1 : first + end]
+        letters = [item.text for item in inside if is_letter(item)]
+        rest = _texts(self.items[first + end + 1 :])
+        if not all(is_letter(item) or item.text in (",", *VECTOR_MARKS) or item.text == "_" for item in inside):
+            return None
+        is_matrix = opened or {"table", "\\times"} & rest
+        if not (is_matrix or (letters and {*letters} <= rest)):
+            return None
+        self.index += opened
         item = self.next()
         subscript = self.script("_")
-        self.index += end + 1
+        self.index += end + 1 + opened
         name = item.text.removeprefix("\\")
         name = self.resolved(name, self.subscript(subscript)) if subscript else name
         self.notes.append(f"{name}(..) is read as the name {name}")
         return Node("name", name)
+
+
+def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
+    """Yield the items of each line of an environment, and whether the line continues the line before it.
+
+    It does if it starts with a plus or minus sign and its first cell is empty or it has no relation sign. Spaces, and
+    commas and full stops at the end of a line, are left out.
+    """
+    for line in table.lines:
+        items = [item for cell in line for item in cell.items if item.kind != "space"]
+        while items and items[-1].text in (",", ".", ";"):
+            items.pop()
+        if items:
+            whole = not any(item.text in SIGNS for item in items) or not line[0].items
+            yield tuple(items), items[0].text in ("+", "-") and whole
+
+
+def _texts(items: Sequence[tree.Node]) -> set[str]:
+    """Return the texts of items and of what is written inside them; ``table`` for each matrix."""
+    texts: set[str] = set()
+    for item in items:
+        texts |= {item.text}
+        parts = [getattr(item, name) for name in ("inside", "above", "below", "base") if hasattr(item, name)]
+        texts |= _texts(parts)
+        texts |= _texts(item.items) if isinstance(item, tree.Row) else set()
+        texts |= _texts(item.scripts) if isinstance(item, tree.Scripts) else set()
+        cells = [cell for line in item.lines for cell in line] if isinstance(item, tree.Table) else []
+        texts |= _texts(cells)
+    return texts

@@ -1,17 +1,20 @@
 """Sums, products, powers, brackets and matrices in LaTeX: the order of operations."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
+from symrot.checker.latex.macros import INSTEAD
 from symrot.latex import tree
 
-__all__ = ["FUNCTIONS", "SumsPart"]
+__all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
     f"\\{command}": name
@@ -23,23 +26,42 @@ FUNCTIONS = {
 }
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
+LONGEST_MATRIX_NAME = 2
+"""The most letters of the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
+
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
 SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
                  "flalign")  # fmt: skip
-ENDS = frozenset(
-    ["", "+", "-", "=", ")", "]", "\\}", "}", "&", "\\\\", ",", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'"]
-)
+SIGNS = {
+    "=": "==", "\\ge": ">=", "\\geq": ">=", "\\geqslant": ">=", ">": ">", "\\gt": ">", "\\le": "<=", "\\leq": "<=",
+    "\\leqslant": "<=", "<": "<", "\\lt": "<",
+}  # fmt: skip
+"""Sign of a relation -> the sign in a claim."""
+
+QUATERNION_SIGNS = ("\\otimes", "\\circ", "\\odot")
+QUATERNION_LETTERS = ("q", "p", "Q", "P")
+"""Signs of the product of quaternions, and letters that are usually quaternions."""
+
+ENDS = frozenset([
+    "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",
+    *QUATERNION_SIGNS, *SIGNS,
+])  # fmt: skip
 """Items that cannot start a factor."""
 
 
 class SumsPart(Cursor):
     """The methods of the LaTeX reader that read sums, products, powers, brackets and matrices."""
 
+    vector: Callable[[str], Node]
+    named: Callable[[str, Any], Node]
+    leibniz: Callable[[], Node | None]
+    """The methods of further parts that return the name of a vector, and read what follows a name, and ``dx/dt``."""
+
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
     """Kind or text of an item -> the method of a further part that reads it."""
 
     def expression(self) -> Node:
-        """Read a sum."""
+        """Read a sum and return its tree."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING // 2:
             raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels")
@@ -57,9 +79,12 @@ class SumsPart(Cursor):
             negative = self.next().text == "-"
         left = self.run()
         crossed = False
-        while self.at("\\cdot", "\\times", "*") and not self.is_cross_matrix():
+        while self.at("\\cdot", "\\times", "*", *QUATERNION_SIGNS) and not self.is_cross_matrix():
             operator = self.next()
             right = self.run()
+            if operator.text in QUATERNION_SIGNS:
+                left = quaternion_product(left, right)
+                continue
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
             if operator.text == "\\times" and any(kinds) and not all(kinds):
                 self.note_vector(right if kinds[0] else left)
@@ -104,7 +129,7 @@ class SumsPart(Cursor):
         return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
     def run(self) -> Node:
-        """Read the factors of a product without product signs, with slashes, as in ``a/b`` or ``1/2 m``."""
+        """Read factors with slashes but without product signs, as in ``a/b`` or ``1/2 m``; return their product."""
         factors = [self.factor()]
         divided: tree.Node | None = None
         while True:
@@ -113,24 +138,41 @@ class SumsPart(Cursor):
                 self.next()
                 if divided:
                     raise self.fail("brackets, since a second slash is ambiguous", token)
-                if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values():
+                if factors[-1].kind == "call" and factors[-1].value in FUNCTIONS.values() and self.flips is None:
                     raise self.fail("brackets, since the slash may belong to the argument", token)
-                factors.append(Node("inv", None, (self.factor(),)))
-                simple = len(factors) == 2 and all(f.kind == "number" for f in (factors[0], factors[1].args[0]))
-                divided = None if simple else token
+                divisor, sure = self.divisor(factors, token)
+                factors.append(Node("inv", None, (divisor,)))
+                divided = None if sure else token
             elif not self.starts_factor():
                 return product(factors)
-            elif divided:
-                raise self.fail("brackets, since it is not clear how much the slash divides by", divided)
             elif token.kind == "number":
                 raise self.fail("brackets or a product sign before a number")
             else:
                 factors.append(self.factor())
 
+    def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
+        """Read the formula after a slash, a factor or the product ``2m`` of ``p^2/2m``, and return its tree.
+
+        Also return whether the factors after the formula are certainly no part of it, as in ``1/2 m``.
+        """
+        first = self.peek()
+        below = [self.factor()]
+        if len(factors) == 1 and factors[0].kind == below[0].kind == "number":
+            return below[0], True
+        whole = first.kind == "number" and factors[-1].kind != "number"
+        while self.starts_factor() and self.peek().kind != "number":
+            follower = self.peek()
+            usual = whole and is_letter(follower)
+            ambiguous = "brackets, since it is not clear how much the slash divides by"
+            if self.doubtful("divisor", slash, self.peek(1).start, ambiguous) == usual:
+                break
+            below.append(self.factor())
+        return product(below), False
+
     def starts_factor(self) -> bool:
         """Return whether a factor may start at the cursor."""
         item = self.peek()
-        if item.text in ENDS:
+        if item.text in ENDS or self.words(item):
             return False
         if item.text in ("|", "\\|"):
             return item.text not in self.open_bars
@@ -141,13 +183,16 @@ class SumsPart(Cursor):
         return is_d(self.peek()) and is_letter(self.peek(1))
 
     def factor(self) -> Node:
-        """Read one factor with its exponents."""
+        """Read one factor with its exponents and return its tree."""
+        if self.flips is not None and (derivative := self.leibniz()) is not None:
+            return derivative
         item = self.next()
         node = self.base(item)
         while raised := self.script("^"):
             if node.kind == "power":
                 raise self.fail("brackets around a repeated power", raised)
-            if node.kind == "call" and node.value in FUNCTIONS.values():
+            is_function = node.kind == "call" and node.value in FUNCTIONS.values()
+            if is_function and item.start not in self.short and self.flips is None:
                 raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
         return node
@@ -159,9 +204,15 @@ class SumsPart(Cursor):
             mark = tree.alone(mark.inside)
         if mark.text in ("T", "\\top", "\\intercal"):
             return Node("transpose", None, (node,))
+        if mark.text in ("*", "\\ast", "\\star"):
+            return self.starred(node)
+        if mark.text == "\\circ":
+            return product([node, Node("name", "pi"), Node("inv", None, (number(180),))])  # degrees
         if mark.text in ("\\times", "×"):
             self.note_vector(node)
             return Node("call", "skew", (node,))
+        if mark.text == "\\circ":
+            return product([node, Node("name", "pi"), Node("inv", None, (number(180),))])
         texts = [item.text for item in getattr(inside, "items", ())]
         if texts[:3:2] == ["(", ")"] or (isinstance(mark, tree.Delimited) and len(mark.inside.items) == 1):
             raise self.fail("a power like x^2 instead of x^{(2)}", inside)
@@ -170,8 +221,16 @@ class SumsPart(Cursor):
             return Node("call", "dot", (node, node))
         return Node("power", None, (node, exponent))
 
+    def starred(self, node: Node) -> Node:
+        r"""Return the conjugate of a quaternion, or a name with a star, as in ``T^*``."""
+        products = any(sign in self.source for sign in QUATERNION_SIGNS)
+        if node.kind != "name" or products or str(node.value)[:1] in QUATERNION_LETTERS:
+            return Node("call", CONJUGATE, (node,))
+        base, marked, _ = str(node.value).partition(MARK)
+        return self.vector(f"{base}_star") if marked else replace(node, value=f"{base}_star")
+
     def argument(self, node: tree.Node) -> Node:
-        """Return the argument of a command: a group in braces, or one token."""
+        """Return the tree of a command's argument, which is a group in braces or one token."""
         if isinstance(node, tree.Row):
             return self.inside(node, self.expression)
         if node.kind == "number":
@@ -187,7 +246,7 @@ class SumsPart(Cursor):
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Read one factor without its exponents."""
+        """Read one factor without its exponents and return its tree."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":
@@ -195,17 +254,32 @@ class SumsPart(Cursor):
         read = self.readers.get("letter" if is_letter(item) else item.text)
         if read is None:
             known = "a command that is known" if item.text.startswith("\\") else "a number, a symbol or a bracket"
-            raise self.fail(known, item)
+            raise self.fail(f"{INSTEAD[item.text]}, instead of {item.text}" if item.text in INSTEAD else known, item)
         return read(self, item)
+
+    def matrix_name(self) -> Node | None:
+        r"""Read capital letters in square brackets, ``[FB]``; return one matrix name, or None for other brackets."""
+        texts = [item.text for item in self.items[self.index :]]
+        end = texts.index("]") if "]" in texts else 0
+        name, after = "".join(texts[:end]), self.peek(end + 1)
+        is_name = name.isalpha() and name.isupper() and all(len(text) == 1 for text in texts[:end])
+        if not is_name or not 1 <= end <= LONGEST_MATRIX_NAME or self.flips is None:
+            return None
+        if end == 1 and (isinstance(after, tree.Script) and tree.alone(after.inside).text in ("\\times", "×")):
+            return None
+        item = self.peek()
+        self.index += end + 1
+        if end > 1:
+            self.notes.append(f"[{name}] is read as the name of one matrix, not as a product")
+        return self.named(name, item)
 
     def bracket(self, opening: tree.Node) -> Node:
         if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
-            letter = tree.alone(frame.inside)
-            letter = tree.alone(letter.inside) if isinstance(letter, tree.Font) else letter
-            self.notes.append(f"the mark {letter.text} before a name is read as its frame, and left out")
-            return self.base(self.next())
+            return self.framed(frame)
         if opening.kind == "row":
             return self.inside(opening, self.expression)
+        if opening.text == "[" and (matrix := self.matrix_name()) is not None:
+            return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
         crossed = opening.text == "[" and self.take("\\times")
@@ -219,6 +293,22 @@ class SumsPart(Cursor):
             self.next()
         self.note_vector(inner)
         return Node("call", "skew", (inner,))
+
+    def framed(self, mark: tree.Script) -> Node:
+        r"""Read a name after its frame, ``{}^A R_B``; return its node, with the frames if there are several."""
+        frame = tree.alone(mark.inside)
+        while isinstance(frame, tree.Font):
+            frame = tree.alone(frame.inside)
+        letter = frame.text.removeprefix("\\")
+        name = self.base(self.next())
+        if len(self.frames) == 1:
+            self.notes.append(f"the mark {letter} before a name is read as its frame, and left out")
+            return name
+        if name.kind not in ("name", "call") or not letter.isalnum():
+            raise self.fail("a name after the mark of a frame", mark)
+        base, marked, _ = str(name.value).partition(MARK)
+        self.notes.append(f"the mark {letter} before {base} is read as a part of the name, {base}_{letter}")
+        return self.vector(f"{base}_{letter}") if marked else replace(name, value=f"{base}_{letter}")
 
     def bars(self, bar: tree.Node) -> Node:
         inner = self.barred(self.expression, bar.text)

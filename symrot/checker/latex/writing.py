@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
+from symrot.checker.claim.notation import with_formulas
 from symrot.checker.claim.reader import Relation, read_relation
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.errors import InputError
 from symrot.latex.tokens import GREEK
 
-__all__ = ["LatexNotation", "latex_of", "latex_of_text"]
+__all__ = ["LatexNotation", "Writer", "latex_of", "latex_of_text"]
 
 COMMANDS = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "exp", "sinh", "cosh", "tanh", "det")},
@@ -21,10 +22,13 @@ COMMANDS = {
 """Built-in function -> its command."""
 
 DOTS = {1: "\\dot", 2: "\\ddot", 3: "\\dddot"}
-VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot"}
-"""Product of two vectors -> its sign."""
+VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot", "qmul": "\\otimes"}
+"""Product of two vectors or quaternions -> its sign."""
 
 NO_VECTORS: Mapping[str, bool] = {}
+
+SIGNS = {"==": "=", "!=": "\\neq", ">=": "\\geq", "<=": "\\leq", "and": "\\text{ and }", "or": "\\text{ or }"}
+"""Sign of a condition -> its LaTeX."""
 
 SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
@@ -33,9 +37,8 @@ SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 class LatexNotation:
     """LaTeX as a notation for the formulas of a text, with the names of its functions of time and of its vectors.
 
-    The value of a vector is True if it has a hat.
-
-    A formula without LaTeX that the reader would read as the same formula is written as SymPy's text.
+    The value of a name in ``vectors`` is True if the vector has a hat. A formula is written as SymPy's text if the
+    LaTeX reader would not read the same formula from its LaTeX.
     """
 
     functions: Collection[str] = ()
@@ -54,6 +57,10 @@ class LatexNotation:
     def rewritten(self, source: str) -> str:
         """Return the LaTeX of an equation that is given as SymPy's text."""
         return latex_of_text(source, self.functions, self.vectors)
+
+    def condition(self, source: str) -> str:
+        """Return the LaTeX of a condition that is given as SymPy's text."""
+        return with_formulas(source, self.formula, SIGNS)
 
 
 def latex_of(
@@ -78,7 +85,7 @@ def latex_of(
         return None
     timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
     try:
-        written = " = ".join(_Writer(timed, vectors).formula(side) for side in relation[1:])
+        written = " = ".join(Writer(timed, vectors).formula(side) for side in relation[1:])
         same = read_latex(written, names=Names(functions=functions)).text
     except (InputError, KeyError):
         return None
@@ -86,7 +93,7 @@ def latex_of(
 
 
 def latex_of_text(source: str, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS) -> str:
-    """Return the LaTeX of an equation in SymPy's text, or the text itself if it has no LaTeX.
+    """Return the LaTeX of an equation in SymPy's text, or the text itself if :func:`latex_of` returns None.
 
     Words after the equation (``with ..``) stay unchanged.
     """
@@ -107,11 +114,16 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether a derivative is one with respect to time, of an order that dots can show."""
+    """Return whether a derivative is taken with respect to time only, with an order that dots can show."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
-class _Writer:
+def _is_square(node: Node) -> bool:
+    """Return whether a formula is the scalar product of a formula with itself, whose root is a length."""
+    return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
+
+
+class Writer:
     """Writer of LaTeX: it turns trees into text, in which functions of time have no ``(t)``."""
 
     def __init__(self, timed: Collection[str], vectors: Mapping[str, bool]) -> None:
@@ -155,7 +167,7 @@ class _Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return factors side by side; a divisor makes a fraction with the factor before it."""
+        """Return the LaTeX of factors side by side; a divisor makes a fraction with the factor before it."""
         pieces: list[str] = []
         last = None
         for factor in node.args:
@@ -205,6 +217,12 @@ class _Writer:
             return self.name(Node("name", name))
         if name == "diff" and [(v.kind, v.value) for v in node.args[1:]] == [("name", "t")]:
             return f"\\frac{{d}}{{dt}}({self.formula(node.args[0])})"
+        if name == "conjugate":
+            return f"{self.formula(node.args[0], ATOM)}^*"
+        if name == "sqrt" and _is_square(node.args[0]):
+            return f"\\|{self.formula(node.args[0].args[0])}\\|"
+        if name == "integrate":
+            return self.integral(node)
         if name == "sqrt":
             return f"\\sqrt{{{self.formula(node.args[0])}}}"
         if name == "skew":
@@ -222,10 +240,19 @@ class _Writer:
         command = COMMANDS.get(name, f"\\operatorname{{{name}}}")
         return command + self.argument(node)
 
+    def integral(self, node: Node) -> str:
+        """Return the LaTeX of an integral; the first range in the node is the innermost."""
+        integrand, *ranges = node.args
+        signs = [
+            f"\\int_{{{self.formula(place.args[1])}}}^{{{self.formula(place.args[2])}}}" for place in reversed(ranges)
+        ]
+        differentials = [f"\\,d{self.formula(place.args[0])}" for place in ranges]
+        return f"{' '.join(signs)} {self.formula(integrand, PRODUCT)} {' '.join(differentials)}"
+
     def transpose(self, node: Node) -> str:
         return f"{self.formula(node.args[0], ATOM)}^T"
 
-    writers: ClassVar[Mapping[str, Callable[["_Writer", Node], str]]] = {
+    writers: ClassVar[Mapping[str, Callable[["Writer", Node], str]]] = {
         "number": number, "name": name, "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power,
         "call": call, "transpose": transpose,
     }  # fmt: skip

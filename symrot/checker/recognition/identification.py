@@ -21,6 +21,8 @@ from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
+from symrot.checker.context.admission import admits_letters, admits_name
+from symrot.checker.context.context import read_context
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
@@ -34,7 +36,9 @@ from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Identification", "identified", "identify", "named_parts", "unit_of"]
+__all__ = [
+    "Identification", "identified", "identify", "known_value", "named_parts", "pairings", "plain_name", "unit_of",
+]  # fmt: skip
 
 UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
 
@@ -46,14 +50,17 @@ MOST_DRAWS = 24
 """The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
-FEW_SYMBOLS = 3
-"""A formula of so few symbols is recognised only in the letters that books use for its quantities."""
+FEW_SYMBOLS = 4
+"""A formula of so few symbols is recognised only in the letters that books use for its quantities.
+
+For a matrix, whose entries say more, it is one symbol less.
+"""
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsLRD]\w*|ell",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
@@ -73,7 +80,9 @@ class View:
     order: tuple[int, ...]
 
 
-def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
+def identify(
+    formula: Any, *, most: int = MOST, body: str = "", frame: str = "", sequence: str = ""
+) -> list[Identification]:
     """Return the known formulas to which a formula is equal, nearest names first; an empty list if there is none.
 
     Parameters
@@ -82,6 +91,8 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
         Text in the language of claims, LaTeX (text with a backslash), or a SymPy value.
     most : int
         How many names to return at most.
+    body, frame, sequence : str
+        A body in words, ``"body"`` or ``"space"``, and a sequence of Euler angles: other formulas are left out.
 
     Returns
     -------
@@ -102,7 +113,13 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     >>> identify("Matrix([[sin(b)*sin(c), cos(c), 0], [sin(b)*cos(c), -sin(c), 0], [cos(b), 0, 1]])")[0].name
     'ZXZ body-frame rate Jacobian, omega = B dq/dt'
     """
-    return list(islice(identified(_value(formula)), most))
+    stated = read_context((), body, frame, sequence)
+    fitting = (
+        known
+        for known in identified(_value(formula))
+        if admits_name(stated, known.name, "") and admits_letters(stated, known.mapping, ())
+    )
+    return list(islice(fitting, most))
 
 
 def _value(formula: Any) -> Any:
@@ -182,12 +199,17 @@ def identified(
         ]
         if matches:
             break
-    matches.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
+    matches.sort(key=lambda match: (quantity is not None and "sign" in match.how, *_changes(match)))
     names = set()
     for identification in matches:
         if identification.name not in names:
             names.add(identification.name)
             yield identification
+
+
+def _changes(match: Identification) -> tuple[int, int]:
+    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one."""
+    return bool(match.how) + match.how.count(" and "), len(match.mapping)
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
@@ -221,11 +243,17 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 
 
 @cache
-def _known_value(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
+def known_value(text: str) -> Any:
+    """Return the SymPy value of the text of a known formula, whose names are real symbols."""
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
-    entries, _ = flatten(interpreter.read(tree, text))
+    return interpreter.read(tree, text)
+
+
+@cache
+def _known_entries(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
+    entries, _ = flatten(known_value(text))
     return tuple(entries), fingerprint(entries)
 
 
@@ -233,16 +261,16 @@ def _matched(
     known: Known, own: Fingerprint, entries: Sequence[Expr], view: View, quantity: str | None
 ) -> Identification | None:
     """Return the identification if the formula is proven equal to the known formula; otherwise None."""
-    theirs, print_of = _known_value(known.text)
+    theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
-    for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
-        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS)
+    for pairing in islice(pairings(print_of, own, view.order), MOST_TRIES):
+        few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS - (view.shape is not None))
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         if few and not _keeps_names(pairs):
             continue
-        ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers are those of the factors
+        ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
         if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.is_placed):
             continue
@@ -264,21 +292,23 @@ def _matched(
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
     """Return whether each name that a known formula and a claim have in common stands for the same quantity in both."""
-    names = [(_plain_name(mine), _plain_name(other)) for mine, other in pairs]
+    names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
 
 
 def _is_usual(mine: Expr, own: Expr) -> bool:
-    """Return whether books use the letter of a symbol for a quantity with the unit of a symbol of a known formula."""
-    name = _plain_name(as_text(own))
+    """Return whether books use the letter ``own`` for quantities with the unit of the known symbol ``mine``."""
+    name = plain_name(as_text(own))
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
     return pattern is None or re.fullmatch(pattern, name) is not None
 
 
-def _plain_name(name: str) -> str:
+def plain_name(name: str) -> str:
     """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
+    if rate is None and (dots := re.fullmatch(r"(\w+?)_(d*)dot", name)) is not None:
+        return f"d{dots[2]}{dots[1]}"
     return "d" * rate[3].count("t") + rate[1] if rate else name.removesuffix("(t)")
 
 
@@ -291,7 +321,7 @@ def _factor_text(factor: Rational) -> str:
     return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
 
 
-def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
+def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
     """Yield the ways to pair the symbols of two formulas so that signatures agree, pairs of equal names first."""
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
@@ -311,7 +341,7 @@ def _pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> It
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return orders of the symbols ``others`` to pair them with ``atoms``, the most plausible ones first.
+    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first.
 
     An order is plausible if few units contradict each other and many names are equal.
     """
@@ -331,7 +361,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
 def unit_of(name: str) -> str | None:
     """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
-    name = _plain_name(name)
+    name = plain_name(name)
     if re.fullmatch(r"[ABC]", name):
         return "kg m^2"
     return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
@@ -344,9 +374,9 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant by which two formulas differ, from their values at a point; None if there is none."""
+    """Return the constant factor by which two formulas differ, from their values at a point; None without such one."""
     for draw in range(MOST_DRAWS):
-        point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
+        point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:
             left = values_at(theirs, point)
             placed = {pairing[mine]: value for mine, value in point.items()}

@@ -5,6 +5,8 @@ or tangent: the name of such a formula ends with the inverse function, as in ``"
 """
 
 from collections.abc import Iterator
+from functools import reduce
+from operator import add
 from typing import Any
 
 from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, trace
@@ -12,6 +14,7 @@ from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, tr
 from symrot import symbols
 from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
+from symrot.kinematics.rotations import skew
 
 __all__ = ["rotations", "vectors"]
 
@@ -22,10 +25,10 @@ ENTRIES = Matrix(3, 3, symbols.rotation_entries)
 BELOW = ((2, 1), (0, 2), (1, 0))
 """The entries of a skew matrix that are the components of its vector."""
 WORDS = ("first", "second", "third")
-UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER = (
+UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHEEL = (
     f"derivations/{name}.md"
     for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
-                 "angular_momentum", "kinetic_energy", "work_and_power")
+                 "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel")
 )  # fmt: skip
 
 Named = tuple[str, str, Any]
@@ -42,35 +45,68 @@ def vectors() -> Iterator[Named]:
     yield "velocity of a point of a body", RELATIVE, origin + turning
     yield "velocity of a point in a rotating frame", RELATIVE, relative + turning
     on_body = ALPHA.cross(POSITION) + OMEGA.cross(turning)
-    # d/dt of the velocity: its rate in the rotating frame, and omega times it
+    # d/dt of the velocity: its rate in the rotating frame, plus omega x velocity
     in_frame = Matrix(symbols.relative_acceleration) + ALPHA.cross(POSITION) + OMEGA.cross(relative)
     in_frame += OMEGA.cross(relative + turning)
     for place, added in (("a fixed origin", Matrix([0, 0, 0])), ("a moving origin", Matrix(symbols.acceleration))):
         yield f"acceleration of a point of a body with {place}", RELATIVE, added + on_body
         yield f"acceleration of a point in a rotating frame with {place}", RELATIVE, added + in_frame
     momentum = Matrix(symbols.momentum_b)
+    rates = Matrix([Symbol(f"dL_{n}", real=True) for n in (1, 2, 3)])
+    yield "torque by the rate of the angular momentum in the body", MOMENTUM, rates + OMEGA.cross(momentum)
+    tensor = Matrix(3, 3, [Symbol(f"I_{i}{j}", real=True) for i in "xyz" for j in "xyz"])
+    yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
+    spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
+    yield "torque on a gyroscope whose axis precesses", WHEEL, OMEGA.cross(symbols.C * spin)
     about_point = POSITION.cross(symbols.m * origin) + momentum
     yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
+    yield from _rates_of_the_matrix()
     yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
     yield "power of a torque", POWER, OMEGA.dot(Matrix(symbols.torque_b))
 
 
+def _rates_of_the_matrix() -> Iterator[Named]:
+    """Yield the rates of the rotation matrix and of its transpose, in their entries, from omega in both frames.
+
+    They are proven for the matrix of a quaternion, whose rates are known.
+    """
+    matrix = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
+    for frame, omega in (("body", Matrix(symbols.omega_b)), ("space", Matrix(symbols.omega_s))):
+        rates = quaternion.quaternion_rates(frame) * omega
+        change = reduce(add, (matrix.diff(q) * rate for q, rate in zip(Q, rates, strict=True)))
+        for title, own, rate in (("rotation matrix", matrix, change),
+                                 ("transposed rotation matrix", matrix.T, change.T)):  # fmt: skip
+            for sign, turned in ((sign, turned) for sign in (1, -1) for turned in (_turned_before, _turned_after)):
+                if (sign * turned(own, omega) - rate).applyfunc(expand).is_zero_matrix:
+                    name = f"rate of the {title} from omega in the {frame} frame"
+                    yield name, PARAMETERS, sign * turned(ENTRIES, omega)
+
+
+def _turned_before(matrix: Matrix, omega: Matrix) -> Matrix:
+    return skew(omega) * matrix
+
+
+def _turned_after(matrix: Matrix, omega: Matrix) -> Matrix:
+    return matrix * skew(omega)
+
+
 def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
-    """Yield the rotation matrix by axis and angle in two forms that a unit axis makes equal, and by a quaternion."""
+    """Yield rotation matrices: of axis and angle, in two forms that are equal for a unit axis, and of a quaternion."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     yield "axis and angle (Rodrigues' formula)", powers
     yield "axis and angle (Rodrigues' formula) with a unit axis", _with_unit_axis(powers)
     yield "a unit quaternion", Matrix(quaternion.quaternion_to_dcm(Q))
+    yield "a unit quaternion, q v q*", Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
 
 
 def _with_unit_axis(powers: Matrix) -> Matrix:
-    """Return a matrix with the square of the skew matrix of a unit axis as n n^T - 1."""
+    """Return a matrix in which n n^T - 1 replaces the square of the skew matrix of the unit axis n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (powers + excess * eye(3)).applyfunc(expand)
 
 
 def rotations() -> Iterator[Named]:
-    """Yield entries of matrices, angles, quaternions and other parameters from each other."""
+    """Yield formulas for matrix entries, angles, quaternions and other parameters in terms of each other."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     yield "rotation matrix of a unit axis and an angle (Rodrigues' formula)", UNIT, _with_unit_axis(powers)
     yield from _entries()
@@ -100,7 +136,7 @@ def _entries() -> Iterator[Named]:
 
 
 def _angles() -> Iterator[Named]:
-    """Yield the axis and angle of a matrix, and the angle of a quaternion, of Euler angles, of two rotations."""
+    """Yield formulas for the axis and angle of a rotation, from a matrix, quaternion, Euler angles or two rotations."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     total = expand(trace(powers)).subs(symbols.n3**2, 1 - symbols.n1**2 - symbols.n2**2)
     (cosine,) = solve(expand(total) - trace(ENTRIES), cos(ANGLE))
@@ -109,7 +145,10 @@ def _angles() -> Iterator[Named]:
     sines = [cancel(skew_part[place] / component) for place, component in zip(BELOW, AXIS, strict=True)]
     axis = Matrix([(ENTRIES[i, j] - ENTRIES[j, i]) / (2 * sine) for (i, j), sine in zip(BELOW, sines, strict=True)])
     yield "axis of a rotation matrix", UNIT, axis
-    half = symbols.phi / 2  # the angle is twice that of the scalar part
+    scalar, *vector = rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)
+    yield "scalar component of the quaternion of axis and angle", UNIT, scalar
+    yield from _with_words("quaternion of axis and angle", UNIT, Matrix(vector))
+    half = symbols.phi / 2  # the scalar part is the cosine of half the angle
     assert rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)[0] == cos(half)
     yield "angle of rotation of a unit quaternion, 2 acos", PARAMETERS, Q[0]
     length = sqrt(Q[1] ** 2 + Q[2] ** 2 + Q[3] ** 2)
@@ -135,6 +174,12 @@ def _euler_angles() -> Iterator[Named]:
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
 
 
+def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
+    """Yield the components of a vector that have so few symbols that only a name makes them recognisable."""
+    for word, component in zip(WORDS, column, strict=True):
+        yield f"{word} component of the {name}", source, component
+
+
 def _rodrigues() -> Iterator[Named]:
     """Yield the Rodrigues parameters from axis and angle and from a quaternion, and their rates from omega."""
     of_axis = rotation_vector.quaternion_of_axis_angle()
@@ -142,8 +187,13 @@ def _rodrigues() -> Iterator[Named]:
         for q, origin in ((of_axis, "axis and angle"), (Q, "a quaternion")):
             scalar, *vector = q
             below = scalar if name == "rodrigues" else 1 + scalar
-            yield f"{title} of {origin}", RODRIGUES, Matrix([component / below for component in vector])
+            parameters = Matrix([component / below for component in vector])
+            yield f"{title} of {origin}", RODRIGUES, parameters
+            yield from _with_words(f"{title} of {origin}", RODRIGUES, parameters)
         chart = attitude.chart(name)
+        length, (first, *others) = Symbol("sigma", real=True), chart.parameters
+        scalar = cancel(chart.quaternion[0].subs(dict.fromkeys(others, 0)).subs(first, length))
+        yield f"scalar component of the quaternion of the {title} by their length", RODRIGUES, scalar
         for frame in ("body", "space"):
             rates = chart.rate_matrix(frame).inverse * OMEGA
             yield f"rates of the {title} from omega in the {frame} frame", RODRIGUES, rates.applyfunc(cancel)

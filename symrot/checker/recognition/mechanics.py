@@ -44,6 +44,8 @@ def tops() -> Iterator[Named]:
     yield "rate of precession of a symmetric top from its momenta", HEAVY, rates[DPHI]
     yield "rate of spin of a symmetric top from its momenta", HEAVY, rates[DPSI]
     reduced = kinetic.subs(rates)
+    (nutation,) = solve(momenta[1] - P_THETA, DTHETA)
+    yield "kinetic energy of a symmetric top from its momenta", HEAVY, reduced.subs(DTHETA, nutation)
     for weight in WEIGHTS:
         potential = weight * ARM * cos(THETA)
         yield "potential energy of a heavy top", HEAVY, potential

@@ -32,6 +32,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia.solids import solid
+from symrot.kinematics import quaternion
 from symrot.kinematics.euler import rate_jacobian
 
 __all__ = ["OTHERS", "Relation", "primitive", "relations", "solved"]
@@ -72,7 +73,7 @@ WORK = _new("W_k", "J")
 class Relation(NamedTuple):
     """A difference of two formulas that is zero, with a name and the derivation that it comes from.
 
-    ``words`` says what the relation gives for each symbol for which it is solved.
+    ``words`` gives, for each symbol for which the relation is solved, the first words of that formula's name.
     """
 
     title: str
@@ -82,7 +83,7 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield the formula for each quantity with words, of which the relation is a polynomial of degree 1 or c*x^2 + d.
+    """Yield (name, source, formula) for each symbol in ``words`` if the relation is linear in it or in its square.
 
     The name of a formula for a square ends with ", squared".
     """
@@ -195,7 +196,7 @@ def _top() -> tuple[Matrix, Expr]:
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield the condition of steady precession, for a weight and for a torque, in the spin and in its rate."""
+    """Yield conditions of steady precession, for a weight and for a torque, with the spin or the spin angle's rate."""
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):
@@ -300,6 +301,8 @@ def _free() -> Iterator[Relation]:
     ratio = cancel((omega[1] / omega[2]) / (own[1] / own[2]))  # of the tangents of the angles of omega and momentum
     yield Relation("the angles of momentum and angular velocity to the axis of a free symmetric body", FREE,
                    tan(TILT) - ratio * tan(THETA), {})  # fmt: skip
+    norm = quaternion.unit_relation(symbols.quaternion)
+    yield Relation("the unit norm of a quaternion", "derivations/euler_parameters.md", norm, {})
     turning = symbols.Omega
     slow = alpha.subs(B, A)
     title = "a free symmetric body whose angular velocity precesses"
@@ -311,7 +314,7 @@ def _free() -> Iterator[Relation]:
 
 def _planar() -> Iterator[Relation]:
     """Yield the torques that hold the axis of a body which rotates about z, with products of inertia."""
-    about, rate = Matrix([0, 0, symbols.omega_z]), Matrix([0, 0, symbols.domega_3])
+    about, rate = Matrix([0, 0, symbols.omega_3]), Matrix([0, 0, symbols.domega_3])
     needed = TENSOR * rate + about.cross(TENSOR * about)
     for torque, value in zip(symbols.torque_b, needed, strict=True):
         yield Relation("rotation about the z axis", EULER, torque - value, {torque: "torque of"})

@@ -1,4 +1,4 @@
-"""Renamings of the symbols of a known formula that keep the axes and the angles which the names say.
+"""Renamings of the symbols of a known formula that respect the axes and angles in the names of the symbols.
 
 ``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` is Euler's equation if I_2 is renamed I_3 and I_3 is renamed I_2, but no
 reader means that: omega_2 and omega_3 keep their axes.
@@ -6,8 +6,9 @@ reader means that: omega_2 and omega_3 keep their axes.
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 
-__all__ = ["component", "is_consistent"]
+__all__ = ["axes_of", "component", "is_consistent"]
 
 AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3, "3z")) for letter in letters}
 """Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
@@ -20,7 +21,7 @@ CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 
-RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3])")
+RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|(\w+?)_d*dot|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3]|L_[1-3])")
 """A rate, or a value in time, as text; its group is the name of the quantity."""
 
 ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
@@ -46,14 +47,14 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
-    axes = [(_axes(known), _axes(new)) for known, new in pairs]
+    axes = [(axes_of(known), axes_of(new)) for known, new in pairs]
     entries = [(ENTRY.fullmatch(known), ENTRY.fullmatch(new)) for known, new in pairs]
     places = [(known.groups(), new.groups()) for known, new in entries if known and new]
     return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether the numbers in the names of an earlier and a later value, as omega_1 and omega_2, increase."""
+    """Return whether the new names of an earlier and a later value have increasing numbers: omega_1 and omega_2."""
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -62,26 +63,30 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return the component of a known formula with the name of a quantity, as a pair of a renaming; or no pair."""
+    """Return [(component of a known formula, name of a quantity)], as for a renaming; or an empty list."""
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
-    if parallel and _axes(quantity):
+    if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
     word, _, rest = known.partition(" ")
-    if word not in COMPONENTS or not rest.startswith("component") or not _axes(quantity):
+    if word not in COMPONENTS or not rest.startswith("component") or not axes_of(quantity):
         return []
     return [(f"component_{COMPONENTS[word]}", quantity)]
 
 
+@cache
 def _angle(name: str) -> str:
-    """Return the name of the quantity of which a name is a rate or a value in time; any other name as it is."""
+    """Return the quantity in the name of a rate or of a value in time: phi for dphi; any other name unchanged."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
 
 
-def _axes(name: str) -> frozenset[int]:
+@cache
+def axes_of(name: str) -> frozenset[int]:
     """Return the axes in the index of a name: {1, 2} for I_xy, {3} for omega_3 and for C; empty without an index."""
     name = re.sub("(_bar|_prime)+$", "", name)
+    if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):
+        return frozenset()  # a moment about a point O, or a value at the start
     if name in LETTERS:
         return frozenset({LETTERS[name]})
     index = re.fullmatch(r"(?:[A-Za-z]+?_?|\w+_)([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
@@ -89,12 +94,12 @@ def _axes(name: str) -> frozenset[int]:
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether the entries of a rotation matrix keep their places, or all have those of the transpose."""
+    """Return whether all entries of a rotation matrix stay in their places, or all move as in the transpose."""
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether the new axes are the known ones in another order of all three."""
+    """Return whether an order of the three axes turns each known axis into the new one."""
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

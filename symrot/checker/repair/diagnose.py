@@ -8,16 +8,19 @@ repairs.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, islice
+from typing import Any
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
-from symrot.checker.decide.decision import decide_equation
+from symrot.checker.claim.tree import text as written
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
-from symrot.checker.repair.entries import by_entries, merged
-from symrot.checker.repair.filter import Candidate, Change, NumericFilter
+from symrot.checker.repair.entries import by_entries
+from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
 from symrot.checker.repair.insertions import exchanged_definitions, missing_matrices, missing_terms
+from symrot.checker.repair.joined_pairs import joined_pairs, pair_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solutions
 from symrot.checker.verdict import Diagnosis, Repair
@@ -40,6 +43,9 @@ MOST_REPAIRS = 3
 MOST_EXPANDED = 1_000_000
 """The most products of terms to expand the claim and all candidates; a claim that needs a fourth gets no repair."""
 
+TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
+"""The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
+
 AS_NEAR = 0.35
 """The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair."""
 
@@ -57,13 +63,14 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     if 4 * decision.products > MOST_EXPANDED:
         text = f"the formula is too large to look for repairs: it took {decision.products} products of terms to expand"
         return Diagnosis("none", text), ()
-    repairs = _Search(claim, decision).repairs()
+    search = _Search(claim, decision)
+    repairs = search.repairs()
     if decision.requires:
         needed = decision.requires[0]
         return Diagnosis(needed.code, f"{FAULT_DESCRIPTIONS[needed.code]}: {needed.text}"), repairs
-    if not repairs:
-        return Diagnosis("none", ""), ()
-    return Diagnosis(repairs[0].code, FAULT_DESCRIPTIONS[repairs[0].code]), repairs
+    faults = sorted([*search.tautologies, *((repair.cost, repair.code) for repair in repairs)])
+    code = faults[0][1] if faults else "none"
+    return Diagnosis(code, FAULT_DESCRIPTIONS[code]), repairs
 
 
 class _Search:
@@ -71,11 +78,12 @@ class _Search:
 
     def __init__(self, claim: Claim, decision: Decision) -> None:
         self.numeric = NumericFilter(claim)
-        self.conditional = bool(decision.requires)  # then it lacks the condition, not a term
+        self.conditional = bool(decision.requires)  # then the claim lacks its condition, not a term
         self.products = decision.products
         self.seen: set[tuple[float, ...]] = set()  # values of the candidates that were decided
         self.alike: list[Candidate] = []  # candidates with the values of an earlier one
         self.accepted: list[Candidate] = []  # proven candidates
+        self.tautologies: list[tuple[float, str]] = []  # cost and code of edits that make both sides the same formula
 
     def repairs(self) -> tuple[Repair, ...]:
         """Return the proven repairs, the nearest first."""
@@ -97,6 +105,8 @@ class _Search:
             if len(repairs) < MOST_REPAIRS:
                 repairs += self.proven(stage(), MOST_REPAIRS - len(repairs))
         if not repairs:
+            repairs = self.proven(joined_pairs(numeric, changes), MOST_REPAIRS)
+        if not repairs:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
         repairs.sort(key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:
@@ -104,7 +114,7 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further repairs that are the given repairs written in another way, if they cost about as little."""
+        """Return further repairs with the values of the given ones but another form, if they cost about as little."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -144,30 +154,37 @@ class _Search:
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:
-            if first.place == second.place:
-                tree = merged(self.numeric.tree_at(first.place), first.edit, second.edit)
-                if tree is None:
-                    continue
-                edit = Edit("two_faults", first.edit.cost + second.edit.cost, (), tree)
-                both: tuple[Change, ...] = (Change(first.place, edit),)
-            else:
-                both = (first, second)
-            if self.numeric.holds(both):
+            both = pair_of(self.numeric, first, second)
+            if both is not None and self.numeric.holds(both):
                 yield Candidate(first.cost + second.cost, "two_faults", both)
             if not self.numeric.affordable():
                 return
 
-    def makes_sides_identical(self, code: str, changes: Sequence[Change]) -> bool:
-        """Return whether an edit made both sides the same text: then the edited claim says nothing."""
-        relation = self.numeric.edited(changes).relation
-        assert relation is not None
-        bare = {"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind}
-        return relation[1] == relation[2] and (bool(bare) or code in ("two_faults", "extra_term", "wrong_symbol"))
+    def is_tautology(self, changes: Sequence[Change]) -> bool:
+        """Return whether an edit made both sides the same formula, so that the edited claim says nothing.
+
+        If one side may not be edited, it is the result to reach: then the other side may become the same formula.
+        """
+        if len(self.numeric.sides_to_edit) < len(SIDES):
+            return False
+        left, right, *_ = self.canonical_form(changes)
+        return left == right
+
+    def cancels(self, equation: Equation) -> bool:
+        """Return whether one repaired side cancels to a number, such as ``x/(x/y)/y``, or both do, as in ``x/x == 1``.
+
+        A side that becomes zero does not count.
+        """
+        claimed = self.numeric.claim.equation
+        sides = ((claimed.left, equation.left), (claimed.right, equation.right))
+        bare = [(before, after) for before, after in sides if after != 0 and not _symbols(after)]
+        return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
         """Return the first candidates that the exact engine proves, at most ``most``, no two with the same value."""
         repairs: list[Repair] = []
         attempts = 0
+        bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})
         for cost, code, changes in candidates:
             if attempts >= MOST_PROOFS or len(repairs) == most or self.products > MOST_EXPANDED:
                 break
@@ -178,7 +195,9 @@ class _Search:
             except UndefinedValue:
                 continue
             candidate = Candidate(cost, code, tuple(map(_tidied, changes)) if code == "factor" else changes)
-            if self.makes_sides_identical(code, candidate.changes):
+            if self.is_tautology(candidate.changes):
+                if not bare and code in TELLING:
+                    self.tautologies.append((cost, code))
                 continue
             if values in self.seen:
                 self.alike.append(candidate)
@@ -188,14 +207,20 @@ class _Search:
             text = self.numeric.text(candidate.changes)
             try:
                 read_relation(text.partition(" with ")[0])  # it may be too long for the reader
-                decision = decide_equation(self.numeric.edited(candidate.changes).equation)
+                equation = self.numeric.edited(candidate.changes).equation
+                decision = decide_equation(equation)
             except InputError:
                 continue
             self.products += decision.products
-            if decision.verdict == "true":
-                repairs.append(Repair(text, code, round(cost, 3)))
+            if decision.verdict == "true" and not self.cancels(equation):
+                parts = {change.place: written(change.edit.tree) for change in candidate.changes}
+                repairs.append(Repair(text, code, round(cost, 3), edited=parts))
                 self.accepted.append(candidate)
         return repairs
+
+
+def _symbols(formula: Any) -> set[Any]:
+    return set(getattr(formula, "free_symbols", ()))
 
 
 def _tidied(change: Change) -> Change:

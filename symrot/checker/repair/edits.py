@@ -13,7 +13,17 @@ from fractions import Fraction
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
-__all__ = ["COST", "FAULT_DESCRIPTIONS", "OPPOSITE", "Edit", "neighbours", "normalise_factors", "single_edits"]
+__all__ = [
+    "COST",
+    "FAULT_DESCRIPTIONS",
+    "OPPOSITE",
+    "Edit",
+    "flattened",
+    "neighbours",
+    "normalise_factors",
+    "scaled",
+    "single_edits",
+]
 
 FAULT_DESCRIPTIONS = {
     "none": "",
@@ -25,6 +35,7 @@ FAULT_DESCRIPTIONS = {
     "overall_sign": "a whole side has the wrong sign",
     "commutator_order": "the factors of a matrix product are exchanged",
     "factor": "a factor is wrong, missing or too many",
+    "exponent": "a power is wrong, such as a square that is missing",
     "half_angle": "an angle is used in place of its half",
     "double_half_angle": "an angle is used in place of its double",
     "sin_cos_swap": "sine and cosine are exchanged",
@@ -47,7 +58,7 @@ COST = {
     "commutator_order": 0.65, "quaternion_storage_order": 0.7,
     "inertia_product_sign": 0.65, "sign_of_term": 0.8, "overall_sign": 0.75,
     "sin_cos_swap": 1.0, "wrong_symbol": 1.0, "half_angle": 1.05, "double_half_angle": 1.05, "factor": 1.1,
-    "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
+    "two_faults": 1.6, "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "square_left_out": 0.15, "name_transposed": 0.02,
     "rows_as_columns": 0.01, "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
@@ -63,6 +74,9 @@ COST = {
     "solved_sign": 0.85, "solved_factor_2": 1.16, "solved_rational_factor": 1.3, "solved_number": 1.25,
     "solved_factor": 1.22, "solved_factor_of_number": 0.5, "solved_term_of_sum": 1.5, "solved_term": 1.65,
     "solved_swap": 1.0, "solved_neighbour": 1.0, "solved_symbol": 1.2, "solved_matrix_term": 0.04,
+    # a part of a formula near a known one: per factor e between two numbers, a fraction in place of a number, a power
+    # other than the square, and a function other than the one that is often confused with it
+    "exponent": 1.1, "per_factor_e": 0.1, "no_integer": 0.15, "not_a_square": 0.1, "other_function": 0.1,
     # growth with the size of the inserted formula, and with the depth of the piece
     "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
@@ -71,10 +85,14 @@ COST = {
 MOST_NEIGHBOURS = 12
 """The most names that are tried in place of one name."""
 
+MOST_TERMS_IN_PAIRS = 6
+"""The most terms of a sum of which two signs are changed together."""
+
 FEW = 3
-"""The number of occurrences of an angle up to which all of them are as easily wrong together as one alone."""
+"""Up to this number of occurrences of an angle, all of them are as likely to be wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
+OFTEN_SQUARED = ("exp", "sinh", "cosh", "tanh")
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
 _STEM = re.compile(r"([A-Za-z]+?)_?([0-9]+|[xyz]{1,2}|[sb])")
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -208,7 +226,7 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a transpose is no useful edit: it changes nothing, or the shape alone, or equals another edit."""
+    """Return whether transposing a call is a useless edit: it changes nothing or only the shape, or equals another."""
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
@@ -219,6 +237,9 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
         first, second = (set(p.args) for p in plain)
         if first == second:
             yield "commutator_order", sum_of([negated(term) for term in terms]), 0.0
+    for both in itertools.combinations(range(len(terms)), 2) if 2 < len(terms) <= MOST_TERMS_IN_PAIRS else ():
+        signs = [negated(term) if place in both else term for place, term in enumerate(terms)]
+        yield "two_faults", sum_of(signs), 0.0
     for place, term in enumerate(terms):
         others = [*terms[:place], *terms[place + 1 :]]
         yield "sign_of_term", sum_of([*terms[:place], negated(term), *terms[place + 1 :]]), 0.0
@@ -295,6 +316,8 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
         yield "sign_of_term", replace(node, args=arguments[::-1]), COST["cross_product_order"]
+    elif name in OFTEN_SQUARED:
+        yield "factor", Node("power", None, (node, number(2))), COST["square_left_out"]
     elif name in functions:
         for other in neighbours(name, functions):
             yield "wrong_symbol", replace(node, value=other), 0.0
@@ -393,3 +416,24 @@ def normalise_factors(node: Node) -> Node:
     if not front and (not rest or rest[0].kind == "inv"):
         front = [number(1)]
     return product([*front, *rest, *back], node.span)
+
+
+def scaled(term: Node, ratio: Fraction) -> Node:
+    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
+    size = abs(ratio)
+    above = [] if size.numerator == 1 else [number(size.numerator)]
+    below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
+    made = normalise_factors(product([*above, term, *below])) if above or below else term
+    return negated(made) if ratio < 0 else made
+
+
+def flattened(node: Node) -> Node:
+    """Return a tree in which sums inside of sums are merged, and products inside of products, without terms 0."""
+    args = tuple(map(flattened, node.args))
+    if node.kind == "sum":
+        return sum_of([term for term in args if term.kind != "number" or term.value], node.span)
+    if node.kind == "product":
+        return product(list(args), node.span)
+    if node.kind == "neg":
+        return negated(args[0])
+    return node if args == node.args else Node(node.kind, node.value, args, node.span)

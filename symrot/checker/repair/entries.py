@@ -17,8 +17,9 @@ MOST_PAIRS_OF = 60
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
     """Return the repairs of a matrix, given by its rows, in which each wrong entry has its own edit."""
     candidates: list[Candidate] = []
-    for place, other in (("right", numeric.left), ("left", numeric.right)):
-        tree = numeric.tree_at(place)
+    references = {"right": numeric.left, "left": numeric.right}
+    for place in numeric.sides_to_edit:
+        tree, other = numeric.tree_at(place), references[place]
         cells = matrix_entries(tree)
         try:
             values = [entries_of(point.value(other)) for point in numeric.points]
@@ -48,9 +49,9 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives an entry its correct values at the test points.
+    """Return the cheapest edit that gives an entry its correct values at the test points, or None.
 
-    Its code is ``none`` if the entry has these values already.
+    The code of the edit is ``none`` if the entry has these values already.
     """
 
     def fits(tree: Node) -> bool:

@@ -72,8 +72,13 @@ class NumericFilter:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The trees that may be edited, by place: both sides, and the definitions that the claim uses."""
-        return (*SIDES, *self.used)
+        """The places that the claim allows to edit: ``"left"``, ``"right"`` and the names of used definitions."""
+        return tuple(place for place in (*SIDES, *self.used) if place in self.claim.editable)
+
+    @property
+    def sides_to_edit(self) -> tuple[str, ...]:
+        """The sides that may be edited."""
+        return tuple(place for place in SIDES if place in self.claim.editable)
 
     @property
     def names(self) -> list[str]:
@@ -103,7 +108,7 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited tree says something.
+        """Return whether an edited tree makes sense in its place.
 
         A side must be more than a number, and a definition must not use its own name.
         """
@@ -115,12 +120,7 @@ class NumericFilter:
 
     def edited(self, changes: Sequence[Change]) -> Claim:
         """Return the claim with the changes made to its trees."""
-        trees = {change.place: change.edit.tree for change in changes}
-        relation = ("==", trees.get("left", self.left), trees.get("right", self.right))
-        if not trees.keys() & self.definitions.keys():
-            return self.claim.with_relation(relation)
-        define = tuple((name, trees.get(name, tree)) for name, tree in self.claim.define)
-        return replace(self.claim, relation=relation, define=define)
+        return self.claim.with_parts({change.place: change.edit.tree for change in changes})
 
     def text(self, changes: Sequence[Change]) -> str:
         """Return a repair as text: the edited equation, and the edited definitions."""

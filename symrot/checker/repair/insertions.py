@@ -13,7 +13,6 @@ from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum
 from symrot.checker.repair.edits import COST, Edit
 from symrot.checker.repair.entries import replacement
 from symrot.checker.repair.filter import (
-    SIDES,
     Candidate,
     Change,
     NumericFilter,
@@ -57,13 +56,15 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
     except (TooLarge, InputError):
         return
     lacking = {n: residual for n, residual in enumerate(residuals) if residual != 0}
-    for place, sign in (("right", 1), ("left", -1)):
-        tree = numeric.tree_at(place)
+    signs = {"right": 1, "left": -1}
+    for place in numeric.sides_to_edit:
+        sign, tree = signs[place], numeric.tree_at(place)
         cells = {0: ()} if shape is None else matrix_entries(tree)
         if not is_nontrivial(tree) or tree.kind == "name" or not lacking.keys() <= cells.keys():
             continue
         yield from _whole(numeric, place, {cells[n]: sign * residual for n, residual in lacking.items()})
-    for place, sign in (("right", 1), ("left", -1)):
+    for place in numeric.sides_to_edit:
+        sign = signs[place]
         cells = {0: ()} if shape is None else matrix_entries(numeric.tree_at(place))
         if len(lacking) == 1 and lacking.keys() <= cells.keys():
             ((number_of, residual),) = lacking.items()
@@ -119,7 +120,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
     """Yield repairs that multiply a matrix by another matrix of the claim, from the left or the right."""
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
-    for place in SIDES:
+    for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
         for path, piece in pieces(tree):
             for by in factors if numeric.is_matrix(piece) and is_nontrivial(tree) else ():
@@ -132,9 +133,9 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that use another definition: they replace the name of one by the name of another."""
+    """Yield repairs that replace the name of one definition by the name of another."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
-    for place in SIDES:
+    for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
         for path, node in walk(tree):
             for name in used if node.kind == "name" and node.value in used else ():

@@ -14,7 +14,7 @@ from itertools import combinations_with_replacement, islice
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 from symrot.checker.latex.cursor import TIME
-from symrot.checker.repair.edits import COST, OPPOSITE, Edit, neighbours, normalise_factors
+from symrot.checker.repair.edits import COST, OPPOSITE, Edit, flattened, neighbours, normalise_factors, scaled
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter, is_nontrivial
 from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 
@@ -223,24 +223,14 @@ def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[P
 
 def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit: tuple[str, float]) -> Candidate:
     code, cost = edit
-    tree = _flattened(replaced(numeric.tree_at(place), path, lambda _: made))
+    tree = flattened(replaced(numeric.tree_at(place), path, lambda _: made))
     tree = normalise_factors(tree) if code == "factor" else tree
     change = Change(place, Edit(code, cost + COST["per_level"] * len(path), path, tree))
     return Candidate(change.cost, code, (change,))
 
 
-def _flattened(node: Node) -> Node:
-    """Return a tree in which sums inside of sums are merged, and products inside of products."""
-    args = tuple(map(_flattened, node.args))
-    if node.kind in ("sum", "product"):
-        return (sum_of if node.kind == "sum" else product)(list(args), node.span)
-    if node.kind == "neg":
-        return negated(args[0])
-    return node if args == node.args else Node(node.kind, node.value, args, node.span)
-
-
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that a part must have at the test points for the claim to hold; None if there are none."""
+    """Return the values that a part must have at the test points for the claim to hold; None if none are found."""
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -255,7 +245,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown that makes both sides equal, by the secant method; None if it finds none."""
+    """Return the value of the unknown that makes both sides equal, by the secant method; None if that fails."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value
@@ -304,7 +294,7 @@ def _readings(
             yield negated(piece), ("sign_of_term", COST["solved_sign"])
         elif piece.kind != "neg":
             by_two = plain in (2, Fraction(1, 2), -2, Fraction(-1, 2))
-            yield _scaled(piece, plain), ("factor", COST["solved_factor_2" if by_two else "solved_rational_factor"])
+            yield scaled(piece, plain), ("factor", COST["solved_factor_2" if by_two else "solved_rational_factor"])
     constant = _rational(needed)
     if piece.kind in ("name", "call"):
         for entry, ratio in vocabulary.find(needed):
@@ -326,7 +316,7 @@ def _readings(
         for entry, ratio in vocabulary.find(lacking):
             if not entry.factors and ratio not in ONES:
                 continue
-            made = sum_of([piece, _scaled(entry.node, ratio)])
+            made = sum_of([piece, scaled(entry.node, ratio)])
             least = COST["solved_term_of_sum" if piece.kind == "sum" else "solved_term"]
             yield made, ("missing_term", _weight(least, entry, ratio))
             break
@@ -357,20 +347,11 @@ def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
 def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Node:
     inner, negative = (piece.args[0], True) if piece.kind == "neg" else (piece, False)
     if upward:
-        made = _scaled(product([inner, *entry.factors]), ratio)
+        made = scaled(product([inner, *entry.factors]), ratio)
     else:
         below = [Node("inv", None, (factor,)) for factor in entry.factors]
-        made = _scaled(product([inner, *below]), 1 / ratio)
+        made = scaled(product([inner, *below]), 1 / ratio)
     return negated(made) if negative else made
-
-
-def _scaled(term: Node, ratio: Fraction) -> Node:
-    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
-    size = abs(ratio)
-    above = [] if size.numerator == 1 else [number(size.numerator)]
-    below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
-    made = normalise_factors(product([*above, term, *below])) if above or below else term
-    return negated(made) if ratio < 0 else made
 
 
 # -- matrices ---------------------------------------------------------------------------------------------------------
@@ -385,7 +366,7 @@ def _of_matrix(
     unit = (1.0,) * len(numeric.points)
     needed = _needed(numeric, place, path, product([HOLE, piece]), unit)
     for entry, ratio in vocabulary.find(needed or ()) if needed else ():
-        made = _scaled(product([*entry.factors, piece]), ratio)
+        made = scaled(product([*entry.factors, piece]), ratio)
         yield _candidate(numeric, place, path, made, ("factor", _weight(COST["solved_factor"], entry, ratio)))
         break
     if piece.kind == "neg" or (path and piece.kind in ("name", "call")):
@@ -393,7 +374,7 @@ def _of_matrix(
     for other in _matrices(numeric, piece):
         needed = _needed(numeric, place, path, sum_of([piece, product([HOLE, other])]), (0.0,) * len(numeric.points))
         for entry, ratio in vocabulary.find(needed) if needed else ():
-            added = _scaled(product([*entry.factors, other]), ratio)
+            added = scaled(product([*entry.factors, other]), ratio)
             cost = _weight(COST["solved_term_of_sum"], entry, ratio) + COST["solved_matrix_term"]
             yield _candidate(numeric, place, path, sum_of([piece, added]), ("missing_term", cost))
             break

@@ -13,7 +13,8 @@ from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
-__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter"]
+__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
+           "is_usual_vector"]  # fmt: skip
 
 DEEPEST_NESTING = 60
 LONGEST_NUMBER = 200
@@ -45,7 +46,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names with a meaning: declared symbols, functions of time and matrices, and single names that the text uses.
+    """The names with a meaning: declared symbols, functions of time and matrices, and names that occur by themselves.
 
     ``vectors`` are the names on either side of a cross product, which are vectors.
     """
@@ -87,7 +88,7 @@ class Cursor(ABC):
         self.tokens, self.source, self.where = tokens, source, where
         self.vocabulary, self.flips, self.as_sympy = vocabulary or Vocabulary(), flips, as_sympy
         self.depth = self.index = self.bars = 0
-        self.plain = False
+        self.plain = self.in_integral = False
         self.doubts: list[Doubt] = []
         self.notes: list[str] = []
         self.timed: set[str] = set()
@@ -144,15 +145,15 @@ class Cursor(ABC):
 
     @abstractmethod
     def expression(self) -> Node:
-        """Read a sum."""
+        """Read a sum and return its tree."""
 
     @abstractmethod
     def factor(self) -> Node:
-        """Read a power, with the signs before it."""
+        """Read a power, with the signs before it, and return its tree."""
 
     @abstractmethod
     def power(self) -> Node:
-        """Read a number, name, call or bracket, with its exponents."""
+        """Read a number, name, call or bracket, with its exponents, and return its tree."""
 
     def row(self) -> list[Node]:
         entries = [self.expression()]
@@ -168,7 +169,7 @@ class Cursor(ABC):
         return members
 
     def called(self, function: str, token: Token) -> Node:
-        """Read the arguments, in brackets, of a call of a function."""
+        """Read the arguments, in brackets, of a function and return the tree of the call."""
         self.expect("(")
         arguments = self.members(")")
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
@@ -191,11 +192,17 @@ class Cursor(ABC):
     def starts_factor(self) -> bool:
         """Return whether another factor, without a product sign before it, starts at the cursor."""
         token = self.token()
+        if self.in_integral and self.is_element():
+            return False
         if token.kind in ("number", "fraction"):
             raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
         if token.text in ENGLISH:
             raise self.fail(f"each claim on a line of its own, without the word {token.text!r},")
-        return token.kind == "name" or token.text in FACTOR_MARKS or (token.text == "|" and not self.bars)
+        return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
+
+    def is_element(self) -> bool:
+        """Return whether the element of mass dm is at the cursor."""
+        return self.token().text == "dm"
 
     def end_of_run(self) -> int:
         """Return the position in the text at which the factor at the cursor ends."""
@@ -222,6 +229,11 @@ class Cursor(ABC):
         if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
+
+
+def is_usual_vector(name: str) -> bool:
+    """Return whether a name usually is that of a vector."""
+    return re.split("[_0-9]", name)[0] in USUAL_VECTORS
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:

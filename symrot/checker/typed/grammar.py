@@ -7,7 +7,9 @@ meaning.
 """
 
 import re
+from collections.abc import Sequence
 
+from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.typed.cursor import ADDING
 from symrot.checker.typed.pieces import PiecesPart
@@ -15,9 +17,20 @@ from symrot.checker.typed.tokens import SIGNS, Token
 
 __all__ = ["Parser"]
 
+QUATERNION_SIGNS = ("⊗", "∘")
 TIMES = ("*", "/", "·", "×")
 BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n in "13579"), ("2", "3"), ("4", "3")])
 """Numbers around a slash after ``^`` that may be a broken exponent, x^(3/2); r^2/5 is (r^2)/5."""
+
+
+def _is_matrix_name(node: Node) -> bool:
+    """Return whether a factor is a name in a capital letter, which may be a matrix."""
+    return node.kind == "name" and str(node.value)[0].isupper()
+
+
+def _from_matrix(factors: Sequence[Node]) -> int:
+    """Return the index at which the left side of a cross product starts: at R in ``R a``, else at the last factor."""
+    return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
 class Parser(PiecesPart):
@@ -38,7 +51,7 @@ class Parser(PiecesPart):
                 raise self.fail("two arguments in Eq(left, right)")
             signs = ["=="]
         else:
-            sides, signs = [self.expression()], []
+            sides, signs = [self.head() or self.expression()], []
             while (sign := self.peek()) in SIGNS:
                 signs.append("==" if sign == "=" else sign)
                 self.plain |= sign == "="
@@ -51,6 +64,26 @@ class Parser(PiecesPart):
         if not signs:
             raise self.fail("'==' between two sides")
         return signs, sides
+
+    def head(self) -> Node | None:
+        """Read a head, such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if the text has no head.
+
+        The arguments of a head occur in the formula after it, or this formula is a matrix.
+        """
+        name, texts = self.token(), [token.text for token in self.tokens]
+        end = texts.index(")") if ")" in texts else 0
+        inside, rest = self.tokens[2:end], texts[end + 2 :]
+        known = self.vocabulary.function(name.text) is not None or name.text in self.vocabulary.symbols
+        if name.kind != "name" or known or texts[1:2] != ["("] or texts[end + 1 : end + 2] not in (["="], ["=="]):
+            return None
+        names = [token.text for token in inside if token.kind == "name"]
+        plain = all(token.kind == "name" or token.text == "," for token in inside)
+        if self.as_sympy or not names or names == ["t"] or not plain or not (rest[0] == "[" or {*names} <= {*rest}):
+            return None
+        self.plain = True
+        self.index = end + 1
+        self.note(f"{name.text}(..) is read as the name {name.text}")
+        return Node("name", name.text, (), self.span(name.start))
 
     def expression(self) -> Node:
         self.deeper()
@@ -72,6 +105,10 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]  # [n×]
             if mark == "×" or self.is_cross_letter():
                 self.crossed(factors)
+            elif mark in QUATERNION_SIGNS:
+                self.plain = True
+                self.next()
+                factors = [quaternion_product(product(factors), self.factor())]
             elif (mark == "·" or self.is_spaced_dot()) and self.is_vector(factors[-1]):
                 self.dotted(factors)
             elif mark in TIMES:
@@ -90,7 +127,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Read the formula after a slash: without brackets, one factor or the whole product that follows.
+        """Read and return the formula after a slash: without brackets, one factor or the whole product that follows.
 
         Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
         the product.
@@ -123,22 +160,26 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Read a product with the sign ×: a cross product if a side is a vector, otherwise a product of numbers."""
+        """Read ``×`` and the factor after it, and put their product into ``factors``; for vectors, a cross product."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
-        right, left = self.factor(), factors[-1]
+        own = _from_matrix(factors)
+        right, left = self.factor(), product(factors[own:])
+        is_factor = right.kind == "name" and not self.is_vector(right)
+        if is_factor and self.token().kind == "name" and self.token().text in self.vocabulary.vectors:
+            right = product([right, self.factor()])  # R a x R b and r x m v
         if not self.is_vector(left) and not self.is_vector(right):
             factors.append(right)
             return
         if left.kind == "call" and left.value == "cross" and not closed:
             raise self.fail("brackets that say which of the products comes first", sign.start)
-        if right.kind == "name" and self.token().kind == "name" and not self.is_cross_letter():
+        if self.token().kind == "name" and self.token().text in self.vocabulary.vectors:
             raise self.fail("brackets around the right side of the product of vectors")
-        factors[-1] = Node("call", "cross", (left, right), self.span(left.span[0]))
+        factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Read a product with a dot after a vector, which is a scalar product."""
+        """Read a dot after a vector and the factor behind it; put their scalar product into ``factors``."""
         self.plain = True
         self.next()
         right = self.factor()
@@ -164,6 +205,9 @@ class Parser(PiecesPart):
         if self.take("^"):
             self.plain = True
             return self.caret(base, start)
+        if self.take("†"):
+            self.plain = True
+            return Node("transpose", None, (base,), self.span(start))
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
@@ -180,7 +224,10 @@ class Parser(PiecesPart):
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:
-        """Read the exponent after ``^``: a factor, or the letter T for the transpose."""
+        """Read the exponent after ``^`` and return the power of ``base``, or its transpose (T) or conjugate (*)."""
+        if self.peek() == "*":
+            self.next()
+            return Node("call", CONJUGATE, (base,), self.span(start))
         if self.token().text == "T" and self.token(1).text != "(":
             self.next()
             return Node("transpose", None, (base,), self.span(start))

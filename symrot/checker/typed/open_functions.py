@@ -15,7 +15,7 @@ class OpenFunctionsPart(Cursor):
     """The part of the parser that reads functions without brackets, and derivatives written as quotients."""
 
     def applied(self, function: str, token: Token) -> Node:
-        """Read a function without brackets: ``sin 2x``, ``sin^2 x``, ``tan^-1 x``."""
+        """Read what follows the name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or its power."""
         exponent = self.function_exponent(token)
         inverse = exponent == number(-1) and function in ("sin", "cos", "tan")
         if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
@@ -29,7 +29,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read the exponent between a function and its argument, as the 2 of ``sin^2 x``."""
+        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``, or None."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True
@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read the argument of a function without brackets; return the call, and an exponent of the whole call."""
+        """Read an argument without brackets; return the call, and an exponent of the whole call or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -130,7 +130,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Read the formula after a root sign √, to which no bar shows the end."""
+        """Read the formula after a root sign √, which has no bar to show its end; return the square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -150,7 +150,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
-        """Read ``dx/dt``, ``d²x/dt²`` or ``d/dt x`` as a derivative; None for any other text."""
+        """Read ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)`` and return the derivative; otherwise None."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
         if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
@@ -163,10 +163,10 @@ class OpenFunctionsPart(Cursor):
             return self.quotient_rate(token, texts[2], int(texts[1]), 7)
         if word == "d" and self.token().kind == "power" and texts[2:5] == ["/", "dt", texts[0]] and texts[0].isdigit():
             return self.quotient_rate(token, texts[1], int(texts[0]), 5)
-        return None
+        return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent or a bracket follows the token that is ``ahead`` tokens after the cursor."""
+        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -180,16 +180,94 @@ class OpenFunctionsPart(Cursor):
         self.timed.add(name)
         return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
 
+    def derivative_by(self, token: Token) -> Node | None:
+        """Read ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` and return the derivative by x; None for any other text."""
+        if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
+            return None
+        if token.text == "d" and self.peek() == "(" and (end := self.end_of_bracket()) is not None:
+            return self.derivative_of_bracket(token, end)
+        place, name = 0, token.text[1:]
+        order, place = self.order_at(place)
+        if not name and self.token(place).text != "/":
+            name, place = self.tight_name(place)
+        slash, (variable, place) = self.token(place).text, self.differential(place + 1)
+        below, place = self.order_at(place)
+        if slash != "/" or not variable or variable == "t" or order != below or name == variable:
+            return None
+        after = self.token(place)
+        if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):
+            return None
+        self.plain = True
+        self.index += place
+        variables = [Node("name", variable)] * order
+        if name:
+            return Node("call", "diff", (Node("name", name), *variables), self.span(token.start))
+        self.deeper()
+        operand = self.factor()
+        self.depth -= 1
+        if self.peek() == "" and self.starts_factor():
+            raise self.fail(f"brackets around the formula after d/d{variable}")
+        return Node("call", "diff", (operand, *variables), self.span(token.start))
+
+    def end_of_bracket(self) -> int | None:
+        """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it; None otherwise."""
+        depth, place = 0, 0
+        while self.token(place).kind != "end":
+            depth += (self.token(place).text == "(") - (self.token(place).text == ")")
+            place += 1
+            if depth == 0:
+                return place if self.token(place).text == "/" and self.differential(place + 1)[0] else None
+        return None
+
+    def derivative_of_bracket(self, token: Token, end: int) -> Node:
+        """Read ``(x^2)/dx`` after a d and return the derivative; the bracket at the cursor has ``end`` tokens."""
+        variable, after = self.differential(end + 1)
+        length = after - end
+        self.plain = True
+        self.deeper()
+        operand = self.factor()
+        self.depth -= 1
+        self.index += length
+        if variable == "t":
+            self.varies(operand)
+        return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
+
+    def order_at(self, place: int) -> tuple[int, int]:
+        """Return the order of a derivative, written as a power at a place (1 without a power), and the place after it.
+
+        Places are counted in tokens from the cursor.
+        """
+        token, after = self.token(place), self.token(place + 1)
+        if token.text in ("^", "**") and after.text.isdigit():
+            return int(after.text), place + 2
+        return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
+
+    def tight_name(self, place: int) -> tuple[str, int]:
+        """Return the name at a place, empty if there is none or a blank is before it, and the place after the name."""
+        token = self.token(place)
+        return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
+
+    def differential(self, place: int) -> tuple[str, int]:
+        """Return the variable of ``dx`` or ``dθ`` at a place (empty if there is none), and the place after it."""
+        token = self.token(place)
+        if token.kind != "name" or not token.text.startswith("d"):
+            return "", place
+        return (token.text[1:], place + 1) if token.text != "d" else self.tight_name(place + 1)
+
     def derivative_of_next(self, token: Token) -> Node:
         self.plain = True
         self.index += 2
         self.deeper()
         operand = self.factor()
         self.depth -= 1
-        for _, node in walk(operand):
-            varies = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
-            if varies or (node.kind == "call" and node.args == (TIME,)):
-                self.differentiated.add(str(node.value))
+        self.varies(operand)
         if self.peek() == "" and self.starts_factor():
             raise self.fail("brackets around the formula after d/dt")
         return Node("call", "diff", (operand, TIME), self.span(token.start))
+
+    def varies(self, operand: Node) -> None:
+        """Note that the names in a formula after d/dt may be functions of time."""
+        for _, node in walk(operand):
+            is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
+            if is_open or (node.kind == "call" and node.args == (TIME,)):
+                self.differentiated.add(str(node.value))

@@ -5,11 +5,12 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME
+from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, TIME
 from symrot.checker.typed.open_functions import OpenFunctionsPart
-from symrot.checker.typed.tokens import GREEK_WORDS, Token
+from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
 from symrot.checker.typed.words import SINGLE_ARGUMENT
 
 __all__ = ["PiecesPart"]
@@ -58,6 +59,10 @@ class PiecesPart(OpenFunctionsPart):
                 self.next()
                 inner = node.args[0] if node.kind == "list" else node
                 node = Node("call", "skew", (inner,), self.span(start))
+            elif token.text == "*" and self.is_star():
+                self.plain = True
+                self.next()
+                node = Node("call", CONJUGATE, (node,), self.span(start))
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
                     raise self.fail("a single degree sign")
@@ -67,6 +72,14 @@ class PiecesPart(OpenFunctionsPart):
                 node = product(degrees, self.span(start))
             else:
                 return node
+
+    def is_star(self) -> bool:
+        """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows."""
+        after = self.token(1)
+        ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
+        return not self.token().spaced and (
+            after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))
+        )
 
     def is_skew_cross(self, node: Node) -> bool:
         """Return whether a cross directly after square brackets, ``[n]x`` or ``[n]×``, makes a skew matrix."""
@@ -89,7 +102,7 @@ class PiecesPart(OpenFunctionsPart):
         return True
 
     def method(self, node: Node, start: int) -> Node:
-        """Read a method of a matrix after a dot, such as ``.T``."""
+        """Read a method of a matrix after a dot, such as ``.T``, and return its value as a tree."""
         token = self.token()
         if token.kind != "name" or token.text not in METHODS:
             names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
@@ -177,9 +190,13 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is not a built-in function: a symbol, perhaps before a bracket, or a function of time."""
+        """Read a name that is not built in; return a symbol, or a function with the arguments in its bracket."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
+        if word == "S" and self.peek() == "(" and inside[0] in self.vocabulary.vectors and inside[1] == ")":
+            self.note("S(..) is read as the skew matrix of a vector")
+            self.plain = True
+            return self.called("skew", token)
         if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
             return self.called(word, token)
         if self.peek() == "(":
@@ -240,7 +257,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
 
     def holds_skew_vector(self) -> bool:
-        """Return whether the square bracket before the cursor is one of ``[R ω]×``: without commas, before a cross."""
+        """Return whether the square bracket before the cursor is that of a skew matrix, ``[R ω]×``: no commas, a ×."""
         inside = [token.text for token in self.tokens[self.index :]]
         end = inside.index("]") if "]" in inside else 0
         cross = self.token(end + 1)
@@ -257,14 +274,25 @@ class PiecesPart(OpenFunctionsPart):
         self.plain = True
         self.bars += 1
         inner = self.expression()
-        self.expect("|")
+        self.expect(token.text)
         self.bars -= 1
-        if self.is_vector(inner):
+        if self.is_vector(inner) or token.text == "‖":
             return Node("call", "sqrt", (Node("call", "dot", (inner, inner), self.span(token.start)),))
         return Node("call", "abs", (inner,), self.span(token.start))
 
+    def over_body(self, token: Token) -> Node:
+        """Read ``∫ x² dm``, an integral over a body that the text does not describe; return its tree."""
+        self.plain = True
+        self.in_integral = True
+        inner = number(1) if self.is_element() else self.expression()
+        self.in_integral = False
+        if not self.is_element():
+            raise self.fail("dm at the end of an integral over a body (write integrate(f, (x, from, to)) for others)")
+        self.next()
+        return Node("call", "integral_over_body", (inner,), self.span(token.start))
+
     readers: ClassVar[Mapping[str, Callable[[Any, Token], Node]]] = {
         "number": OpenFunctionsPart.numeral, "name": name, "fraction": fraction, "(": bracket, "[": square_bracket,
-        "|": absolute, "√": OpenFunctionsPart.root,
+        "|": absolute, "‖": absolute, "∫": over_body, "√": OpenFunctionsPart.root,
     }  # fmt: skip
     """Kind of a token, or the mark -> the function that reads a piece that starts with it."""

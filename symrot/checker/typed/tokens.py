@@ -66,20 +66,21 @@ _ALIKE = {
     "−": "-", "–": "-", "∗": "*", "∙": "·", "⋅": "·", "•": "·", "÷": "/", "∕": "/", "⁄": "/", "≡": "==", "≠": "!=",
     "≥": ">=", "≤": "<=", "⩾": ">=", "⩽": "<=",
     "′": "'", "’": "'", "″": "''", "‴": "'''", "µ": "μ",
-    "\u2126": "Ω", "º": "°", "⨯": "×",
+    "\u2126": "Ω", "º": "°", "⨯": "×", "∥": "‖", "⊙": "⊗", "˚": "°", "\ufeff": " ", "\u2061": " ", "\u2062": " ",
+    "˙": "\u0307", "¨": "\u0308", "ˆ": "\u0302", "˜": "\u0303", "¯": "\u0304",
 }  # fmt: skip
 """Character -> the characters that mean the same."""
 
 _FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
 
 _HINTS = {
-    "\\": "LaTeX goes into latex = ..", "∫": "write integrate(f, (x, from, to))",
-    "∬": "write integrate(f, (x, from, to))", "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
+    "\\": "LaTeX goes into latex = ..",     "∬": "write integrate(f, (x, from, to))",
+    "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
     "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
     "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
-    "%": "write /100", "∇": "write diff(f, x)", "±": "write two claims, with + and with -", "∓": "write two claims",
+    "%": "write /100", "∇": "write diff(f, x)", "\u00ad": "a soft hyphen: write - or delete it",
     "&": "write two claims, each on a line", "≈": "write = with the digits that you know",
     "→": "write =", "⇒": "write two claims, each on a line",
 }  # fmt: skip
@@ -87,8 +88,11 @@ _HINTS = {
 
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
-_MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°]")
-_SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}])|[{''.join(_LOWERED)}]+")
+_MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°⊗∘‖±∓†∫]")
+_SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)}]+")
+_PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
+"""Primes between a letter and its subscript."""
+
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
 _SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
 _DIGITS = re.compile(r"[0-9]+", re.ASCII)
@@ -102,7 +106,7 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
     InputError
         For a character that means nothing in a formula, with its place and with a character to write instead.
     """
-    text, places = _written_out(source.rstrip())
+    text, places = _accents_after_letters(*_written_out(source.rstrip()))
     places.append(len(source.rstrip()))
     at, last = 0, len(text)
     blank = line = False
@@ -125,7 +129,8 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
 
 def without_dots(name: str) -> str:
     """Return a name as it is typed, without the dots over it."""
-    return "".join(part for part in unicodedata.normalize("NFD", name) if part not in _DOTS)
+    parts = (_ALIKE.get(part, part) for part in unicodedata.normalize("NFD", name))
+    return "".join(part for part in parts if part not in _DOTS)
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
@@ -137,6 +142,17 @@ def _written_out(source: str) -> tuple[str, list[int]]:
         written.append(alike)
         places.extend([place] * len(alike))
     return "".join(written), places
+
+
+def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
+    """Return a text in which a dot or hat before a letter, as text copied from a PDF has it, comes after the letter."""
+    characters, places = list(text), [*places]
+    for at in range(len(characters) - 1):
+        alone = characters[at] in _OVER and not (at and (characters[at - 1].isalpha() or characters[at - 1] in _OVER))
+        if alone and characters[at + 1].isalpha():
+            characters[at], characters[at + 1] = characters[at + 1], characters[at]
+            places[at], places[at + 1] = places[at + 1], places[at]
+    return "".join(characters), places
 
 
 def _alike(character: str) -> str:
@@ -170,6 +186,8 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         while text[stop : stop + 1] == "'":
             stop += 1
         yield "prime", text[at:stop], stop
+    elif character == "~" and at and text[at - 1].isalnum():
+        yield "tilde", "tilde", at + 1
     elif character in _RAISED:
         stop = at
         while text[stop : stop + 1] and text[stop] in _RAISED:
@@ -192,10 +210,16 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
         return
     if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
         word, stop = word + LETTERS[text[stop]], stop + 1
+    primes = _PRIMED.match(text, stop)
+    stop = primes.end() if primes else stop
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, stop)
     if lowered is not None:
         word, stop = f"{word}_{''.join(_LOWERED[c] for c in lowered[0])}", lowered.end()
+    elif word.endswith("_") and text[stop : stop + 1] in ("±", "∓"):
+        word, stop = word + text[stop], stop + 1
     yield "name", word, stop
+    if primes:
+        yield "prime", primes[0], stop
 
 
 def _written(digits: str) -> str:
@@ -212,6 +236,8 @@ def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
         dots, over = dots + _DOTS.get(text[stop], 0), _SIGNS_OVER.get(text[stop], over)
         stop += 1
     word += "_bar" if over == "bar" else ""
+    primes = _PRIMED.match(text, stop)
+    stop = primes.end() if primes else stop
     if subscript := _SUBSCRIPT.match(text, stop):
         letters = (_LOWERED.get(c, LETTERS.get(c, c)) for c in subscript[0].removeprefix("_"))
         word, stop = f"{word}_{''.join(letters)}", subscript.end()
@@ -219,7 +245,11 @@ def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
         word, stop = f"{word}_{component[0]}", component.end()
     elif word == "Delta" and text[stop : stop + 1].isascii() and text[stop : stop + 1].isalpha():
         word, stop = f"{word}_{text[stop]}", stop + 1
+    elif word == "Delta" and text[stop : stop + 1] in LETTERS:
+        word, stop = f"{word}_{LETTERS[text[stop]]}", stop + 1
     yield "name", word, stop
+    if primes:
+        yield "prime", primes[0], stop
     if over in ("hat", "tilde"):
         yield over, over, stop
     if dots:

@@ -15,6 +15,7 @@ __all__ = [
     "SINGLE_ARGUMENT",
     "UNITS",
     "Shorthand",
+    "lost_power",
     "pieces_of_word",
     "shorthands",
     "split_tokens",
@@ -36,7 +37,7 @@ ALIASES = {
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
-"""Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
+"""Other names of built-in functions -> the name in trees. Names that SymPy's own text uses are among them."""
 
 _JOINED = re.compile(
     rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
@@ -56,10 +57,16 @@ SCALARS = frozenset("bckmn")
 VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
 """Letters before x, y or z: of a product ``kx``, and of a component ``Fx``."""
 
-WHOLE_WORDS = frozenset([*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "id", *UNITS])
+WHOLE_WORDS = frozenset(
+    [*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "dm", "id", *UNITS]
+)
 
 MOST_LETTERS = 3
 """The most letters of a product that the text does not use by themselves."""
+
+
+WORDS_WITH_I = ("if", "in", "is")
+"""Words of two letters that start with i."""
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
@@ -92,6 +99,8 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         return (), False
     if all(letter in alone for letter in letters):
         return letters, True
+    if len(word) == 2 and word[0] == "i" and word not in WORDS_WITH_I:
+        return letters, True  # the imaginary unit, or an index, times a letter
     if len(word) == 2 and word[1] in "xyz":
         return ((), False) if word[0] in VECTORS else (letters, word[0] in SCALARS or word[1] in alone)
     if word[-1] in "xyz" or len(letters) > MOST_LETTERS or len(set(letters)) < len(letters):
@@ -138,8 +147,20 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
     return short
 
 
+def lost_power(word: str) -> tuple[str, ...]:
+    """Return sin, ^ and 2 for ``sin2``, which may be sin² copied from a PDF; an empty tuple for other words.
+
+    Examples
+    --------
+    >>> lost_power("cos2"), lost_power("r2")
+    (('cos', '^', '2'), ())
+    """
+    match = re.fullmatch("(sin|cos|tan|cot)([23])", word)
+    return (match[1], "^", match[2]) if match else ()
+
+
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens, with each of the words ``words`` replaced by the tokens of the names that it consists of."""
+    """Yield tokens in which the tokens of several names replace each word in ``words``."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):
@@ -147,5 +168,6 @@ def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) ->
             continue
         at, spaced, breaks = token.start, token.spaced, token.breaks
         for piece in pieces:
-            yield Token("number" if piece.isdigit() else "name", piece, at, at + len(piece), spaced, breaks)
+            kind = "number" if piece.isdigit() else "mark" if piece == "^" else "name"
+            yield Token(kind, piece, at, at + len(piece), spaced, breaks)
             at, spaced, breaks = at + len(piece), False, False

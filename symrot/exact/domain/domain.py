@@ -79,7 +79,8 @@ def signs(ring: FormulaRing) -> list[Expr]:
 
 def _leaves(ring: FormulaRing) -> Iterable[Expr]:
     """Return the inverse functions and logarithms in the formulas of a ring, also those inside sines and cosines."""
-    return [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
+    leaves = [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
+    return [*(leaf for leaf in leaves if leaf not in ring.own_logarithms), *ring.logarithms]
 
 
 def _nonzero(leaf: Expr) -> list[Expr]:

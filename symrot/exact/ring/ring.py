@@ -16,7 +16,8 @@ from fractions import Fraction
 from typing import Any
 
 import sympy
-from sympy import Abs, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
+from sympy import Abs, Expr, I, Integer, Pow, Rational, S, cos, pi, preorder_traversal, sin
+from sympy.core.function import AppliedUndef
 from sympy.polys.domains import QQ, ZZ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
@@ -36,6 +37,7 @@ from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.budget import remembered, spend_ring
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
+from symrot.exact.ring.logarithms import logarithms_in, product_of, sums_of_logarithms
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.ring.relations import Relations, Rule, relate
@@ -106,7 +108,9 @@ class FormulaRing:
         self.exponents: dict[Expr, LinearForm] = {}  # argument of an exponential -> its linear form
         self.rewritten: dict[Expr, Expr] = {}  # node -> the equal expression that is read instead
         self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> its factors and roots
-        self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> whether it is in scope
+        self.leaves: dict[Expr, bool] = {}  # symbol or function -> whether it is in the scope of the theorem
+        self.logarithms = self._sums_of_logarithms([*expressions, *relations, *domain])
+        self.own_logarithms = {leaf for total in self.logarithms.values() for leaf in total.atoms(sympy.log)}
         self._collect([*expressions, *relations, *domain])
 
         self.bases = base_coefficients(map(unbound, self.forms.values()))
@@ -155,6 +159,27 @@ class FormulaRing:
 
     # -- what occurs ------------------------------------------------------------------------------------------------
 
+    def _sums_of_logarithms(self, expressions: Sequence[Expr]) -> dict[Expr, Expr]:
+        """Return, for each logarithm in expressions, the sum of logarithms of irreducible factors that equals it."""
+        logarithms = [node for node in logarithms_in(expressions) if _is_of_real(node)]
+        if not logarithms:
+            return {}
+        plain = tuple(
+            each for each in self.hypotheses if not each.has(sympy.log) and not any(map(is_root, each.atoms(Pow)))
+        )
+        inner = FormulaRing([node.args[0] for node in logarithms], plain)
+        roots = {place: (root.index, inner._polynomial(root)) for root, place in inner.roots.items()}
+        products = {}
+        for node in logarithms:
+            content, above, below = inner.lowest_polynomials(inner.ratio(node.args[0]))
+            if content:
+                products[node] = product_of(content, above, below, inner.generators, roots)
+        return sums_of_logarithms(products)
+
+    def _exponential(self, node: Expr) -> Expr:
+        """Return an exponential without logarithms of products in its exponent: exp(b*log(a^2)) is exp(2*b*log|a|)."""
+        return sympy.exp(node.args[0].xreplace(self.logarithms).expand()) if self.logarithms else node
+
     def _collect(self, expressions: Iterable[Expr]) -> None:
         """Collect the angles, roots and symbols in expressions.
 
@@ -184,6 +209,12 @@ class FormulaRing:
                 for atom, coefficient in form.terms:
                     if is_bound(atom, coefficient):
                         stack.extend(parts_of(atom, coefficient))
+            elif self.logarithms.get(node, node) != node and node not in self.own_logarithms:
+                self.rewritten[node] = self.logarithms[node]
+                stack.append(self.rewritten[node])
+            elif isinstance(node, sympy.exp) and self._exponential(node) != node:
+                self.rewritten[node] = self._exponential(node)
+                stack.append(self.rewritten[node])
             elif isinstance(node, sympy.exp) and node.args[0].is_extended_real is not False:
                 self.exponents[node.args[0]] = linear_form(node.args[0], turns=False)
             elif type(node) in REWRITTEN:
@@ -482,6 +513,12 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
         return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
     rest, outside, loose = take_squares(above, below, inner.generators)
     return Radicand(content, rest, Integer(1), outside, loose)
+
+
+def _is_of_real(logarithm: Expr) -> bool:
+    """Return whether the argument of a logarithm is a formula of real symbols and functions."""
+    leaves = logarithm.atoms(sympy.Symbol, AppliedUndef)
+    return not logarithm.has(I) and all(leaf.is_extended_real for leaf in leaves)
 
 
 def _named(dependence: Dependence | None) -> list[Root]:

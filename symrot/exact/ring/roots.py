@@ -24,6 +24,7 @@ __all__ = [
     "Radicand",
     "Root",
     "absolute",
+    "is_positive_where_defined",
     "is_root",
     "radical",
     "sign_of",
@@ -152,12 +153,12 @@ def absolute(value: Expr) -> Root | Expr:
 
 def sign_of(value: Expr) -> int:
     """Return 1 for a real expression that is never negative, -1 if it is never positive, 0 if neither is known."""
-    if value.is_nonnegative or _is_positive_where_defined(value):
+    if value.is_nonnegative or is_positive_where_defined(value):
         return 1
-    return -1 if value.is_nonpositive or _is_positive_where_defined(-value) else 0
+    return -1 if value.is_nonpositive or is_positive_where_defined(-value) else 0
 
 
-def _is_positive_where_defined(value: Expr) -> bool:
+def is_positive_where_defined(value: Expr) -> bool:
     """Return whether a formula consists of exponentials and positive numbers, so that it is positive.
 
     SymPy does not call an exponential positive, because its exponent might be infinite.
@@ -165,8 +166,8 @@ def _is_positive_where_defined(value: Expr) -> bool:
     if isinstance(value, exp):
         return True
     if value.is_Add or value.is_Mul:
-        return all(map(_is_positive_where_defined, value.args))
-    return bool(value.is_Rational and value > 0) or bool(value.is_Pow and _is_positive_where_defined(value.base))
+        return all(map(is_positive_where_defined, value.args))
+    return bool(value.is_Rational and value > 0) or bool(value.is_Pow and is_positive_where_defined(value.base))
 
 
 def is_root(node: Expr) -> bool:

@@ -40,6 +40,9 @@ FONTS = {
 FENCES = {"(": "(", ")": ")", "[": "[", "]": "]", "|": "|", "\\{": "{", "\\}": "}", ".": "", "/": "/", "\\lbrace": "{",
           "\\rbrace": "}", "\\lvert": "|", "\\rvert": "|", "\\langle": "⟨", "\\rangle": "⟩"}  # fmt: skip
 TABLES = {"matrix": ("", ""), "bmatrix": ("[", "]"), "pmatrix": ("(", ")"), "vmatrix": ("|", "|"), "cases": ("{", "")}
+MARK = "\\boxed"
+"""The command before a group that is highlighted on a page."""
+
 THIN = '<mspace width="0.17em"></mspace>'
 WIDEST = 42  # letters per line
 SMALL = 0.75  # scripts, relative to the line
@@ -93,10 +96,16 @@ class _Translation:
         """Return the items of a row of the tree; the LaTeX of an item extends up to the next item."""
         items: list[Item] = []
         kind = "sign"
+        marked = False
         for place, node in enumerate(row.items, start=1):
+            if node.text == MARK:
+                marked = True
+                continue
             end = row.items[place].start if place < len(row.items) else row.end
             item = self.item(node, kind in ("", "function"))
             body = item.mathml
+            if marked:
+                body, marked = f'<mrow class="mark">{body}</mrow>', False
             if item.kind == "function":  # set off by thin spaces, but for a parenthesis after it
                 before = THIN if items and kind == "" else ""
                 body = before + body + ("" if self.latex.startswith(("(", "\\left"), end) else THIN)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from symrot.proof.page import Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
-__all__ = ["markdown"]
+__all__ = ["display", "host_safe", "markdown"]
 
 MANY_SECTIONS = 8
 
@@ -25,23 +25,23 @@ def markdown(page: Page) -> str:
             parts.append(f"## {item.title}")
         elif isinstance(item, Step):
             number += 1
-            parts += [f"**{number}.** {item.claim}", _display(equation(item)), " ".join(remarks(item))]
+            parts += [f"**{number}.** {item.claim}", display(equation(item)), " ".join(remarks(item))]
         else:
             parts.append(item.text)
-            parts += [_display(text) for text in passage_equations(item)]
+            parts += [display(text) for text in passage_equations(item)]
     symbols_used = units(page)
     if symbols_used:
         parts.append(f"**Units** of the symbols in the proofs: {symbols_used}.")
     parts += ["---", footer(page)]
-    return "\n\n".join(map(_host_safe, parts)) + "\n"
+    return "\n\n".join(map(host_safe, parts)) + "\n"
 
 
 MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
 """Pattern of what Markdown would take for its own markup inside an inline formula."""
 
 
-def _host_safe(part: str) -> str:
-    """Return a paragraph in which inline formulas that Markdown would corrupt are written as ``$`...`$``."""
+def host_safe(part: str) -> str:
+    """Return a paragraph whose inline formulas are quoted as ``$`...`$`` where Markdown would corrupt them."""
     if part.startswith("$$"):
         return part
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
@@ -56,5 +56,6 @@ def _contents(page: Page) -> Iterator[str]:
         yield f"Sections: {' · '.join(links)}"
 
 
-def _display(text: str) -> str:
+def display(text: str) -> str:
+    """Return a LaTeX formula as Markdown on lines of its own."""
     return f"$$\n{text}\n$$"

@@ -240,6 +240,7 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
         symbols=(*claim.symbols, *sorted(used - known)),
         functions=(*claim.functions, *sorted(called - known)),
         sources={**claim.sources, "claim": relation_text(relation)},
+        editable=tuple(trees),
     )
 
 

@@ -6,6 +6,7 @@ of them. :mod:`tests.campaigns.checker.oracle_real` judges the truth, point by p
 evidence.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from random import Random
@@ -53,6 +54,10 @@ REAL_RULES = (
     ("abs(X*Y)", "abs(X)*abs(Y)"), ("X", "X + 0*log(Y)"), ("X", "X + Y - Y"), ("X", "X*Y/Y"), ("X", "2*X - X"),
     ("X + Y", "Y + X"), ("X*Y", "Y*X"), ("X", "(X**2 - 1)/(X - 1) - 1"), ("X", "X + sqrt(Y) - sqrt(Y)"),
     ("X", "X + asin(Y) - asin(Y)"), ("X", "X*(Y**(1/3))/(Y**(1/3))"),
+    ("log(X**2*Y)", "2*log(abs(X)) + log(Y)"), ("exp(Y*log(X**2))", "exp(2*Y*log(abs(X)))"),
+    ("exp(Y*log(X))*X", "exp((Y + 1)*log(X))"), ("exp(Y*log(X))", "exp(-Y*log(1/X))"), ("log(26*X)", "log(2) + log(13*X)"),
+    ("sqrt(X/Y)*sqrt(Y/X)", "1"), ("sqrt(X*Y)*abs(X)*abs(Y)", "sqrt(X*Y)*X*Y"), ("sqrt(-X)*abs(X)", "-sqrt(-X)*X"),
+    ("sin(X)", "sin(X*(sin(Y)**2 + cos(Y)**2))"), ("cos(tan(X))", "cos(sin(X)/cos(X))"), ("abs(log(X*Y))", "abs(log(Y*X))"),
 )  # fmt: skip
 """Left and right have one value wherever both have one."""
 
@@ -64,6 +69,8 @@ TRAPS = (
     ("acos(X)", "acos(-X)"),
     ("atan(X)", "pi/2 - atan(1/X)"), ("cosh(X)", "sinh(X)"), ("cosh(X)", "-sqrt(1 + sinh(X)**2)"), ("X", "-X"),
     ("cos(asin(X))", "-sqrt(1 - X**2)"), ("sin(X)", "sqrt(1 - cos(X)**2)"), ("X", "abs(X)"), ("X", "7"), ("X", "5*X"),
+    ("sqrt(X*Y)*abs(X)", "sqrt(X*Y)*X"), ("abs(X)*abs(Y)", "X*Y"), ("log(X*Y)", "2*log(X)"), ("exp(Y*log(X))", "exp(X*log(Y))"),
+    ("log(X*Y)", "log(abs(X)) - log(abs(Y))"), ("log(X)", "log(X**2)"), ("sqrt(X/Y)", "sqrt(Y/X)"),
     ("sqrt(X)*sqrt(Y)", "-sqrt(X*Y)"), ("X**(1/3)", "(X**3)**(1/9)*X"), ("log(X)", "abs(log(X))"),
 )  # fmt: skip
 """Left and right differ for most values, or have none together."""
@@ -84,6 +91,7 @@ SEEDS = (
     "Y - Y + sqrt(X)", "Y*(X**(1/3))", "sin(asin(X))", "cos(asin(X))", "tan(atan(X))", "sin(acos(X))*Y", "cosh(X)",
     "sinh(X)*Y", "tanh(X)", "tan(X)", "X**(3/2)", "(X**3)**(1/3)", "(X**2)**(1/3)", "asin(sin(X))", "acos(cos(X))",
     "atan2(X, Y)", "sqrt(1 - X**2)*Y", "X/(Y - Y + X)", "log(abs(X))", "sqrt(abs(X))",
+    "log(X**2*Y)", "exp(Y*log(X))", "sqrt(X/Y)*sqrt(Y/X)", "abs(X)*abs(Y)", "sin(X)*sqrt(X*Y)", "log(X)**2*log(X*Y)",
 )  # fmt: skip
 
 TOWERS = ("sin", "cos", "exp", "log", "sqrt", "asin", "acos", "atan", "cosh", "sinh", "tanh", "abs", "tan")
@@ -239,7 +247,14 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:
-    return [read_relation(part) for part in requirement.split(" and ")]
+    return [condition for part in requirement.split(" and ") for condition in _links(part)]
+
+
+def _links(condition: str) -> Iterator[tuple[str, Node, Node]]:
+    """Yield the relations of a condition such as ``0 <= x < pi``."""
+    pieces = re.split(r"([<>!=]=|[<>])", condition)
+    for left, sign, right in zip(pieces[::2], pieces[1::2], pieces[2::2], strict=False):
+        yield sign, read_expression(left), read_expression(right)
 
 
 def _obeyed(condition: tuple[str, Node, Node], point: dict[str, Fraction]) -> bool:
@@ -247,7 +262,8 @@ def _obeyed(condition: tuple[str, Node, Node], point: dict[str, Fraction]) -> bo
     value = real_value(left, point) - real_value(right, point)
     if value != 0 and abs(value) < 1e-20:
         raise Unclear
-    return bool({"==": value == 0, ">=": value >= 0, ">": value > 0, "!=": value != 0}[sign])
+    signs = {"==": value == 0, ">=": value >= 0, ">": value > 0, "<=": value <= 0, "<": value < 0, "!=": value != 0}
+    return bool(signs[sign])
 
 
 def _number(shown: str) -> Node:

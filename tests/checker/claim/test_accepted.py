@@ -52,11 +52,12 @@ NAMED = (
     ("T = 1/2 I w^2", "kinetic energy of rotation about one axis"),
     ("I_O = I_c + md^2", "moment of inertia about a parallel axis (parallel-axis theorem)"),
     ("P = M ω", "power of a torque about one axis"),
+    ("q0 = cos θ/2", "scalar component of the quaternion of axis and angle"),
     ("φ̇ = (ω₁ sin ψ + ω₂ cos ψ)/sin θ", "first component of the angle rates of ZXZ from omega in the body frame"),
 )  # fmt: skip
 
 DEFINITIONS = (
-    "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m", "q0 = cos θ/2",
+    "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m",
     "f = 1/2π √(k/m)", "T = ½ I ω² = L²/(2I)", "α = dω/dt",
 )  # fmt: skip
 
@@ -108,9 +109,7 @@ def test_a_wrong_formula_is_found_and_repaired_in_the_same_notation(claim, outco
 
 
 def test_a_rotation_of_axes_is_read_where_one_of_vectors_does_not_fit():
-    """Some books rotate the axes by the angle a, which gives the transposed matrix; the verdict says which reading
-    holds.
-    """
+    """Some books rotate the axes by the angle a, with the transposed matrix; the verdict says which is meant."""
     of_vectors = symrot.check("R_z(a) = [[cos a, -sin a, 0], [sin a, cos a, 0], [0, 0, 1]]")
     of_axes = symrot.check("R_z(a) = [[cos a, sin a, 0], [-sin a, cos a, 0], [0, 0, 1]]")
     assert of_vectors.verdict == of_axes.verdict == "true"

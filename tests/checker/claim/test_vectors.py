@@ -61,7 +61,7 @@ def test_a_vector_without_a_hat_may_have_any_length():
         r"\mathbf n\times(\mathbf n\times\mathbf v) = (\mathbf n\cdot\mathbf v)\mathbf n - \mathbf v"
     )
     assert verdict.verdict == "conditional"
-    assert verdict.conditions == ("n_x**2 + n_y**2 + n_z**2 == 1",)
+    assert verdict.conditions == ("n_x^2 + n_y^2 + n_z^2 = 1",)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,215 @@
+"""The real and imaginary parts of formulas such as ``exp(i*x)``, as trees: equal formulas have equal parts."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from itertools import permutations
+from typing import ClassVar
+
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.errors import InputError, complaint
+
+__all__ = ["imaginary_unit", "with_parts"]
+
+Parts = tuple[Node, Node]
+ZERO, ONE = number(0), number(1)
+LETTERS = ("i", "j", "I")
+CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
+MOST_FACTORS = 16
+"""The highest power of a complex number that is multiplied out."""
+
+
+def imaginary_unit(trees: Sequence[Node]) -> Node | None:
+    """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
+
+    The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and cosines.
+    A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and
+    its conjugate, or if they have circular and hyperbolic functions and it is inside one of these.
+    """
+    nodes = [node for tree in trees for _, node in walk(tree)]
+    for letter in LETTERS:
+        for node in nodes:
+            inside = _exponent(node)
+            if inside is not None and (own := _letter_in(inside, letter)):
+                return own
+            if node.kind == "product" and (own := _factor_of_sines(node, letter)):
+                return own
+    return next((own for letter in LETTERS[:2] if (own := _evident(trees, nodes, letter))), None)
+
+
+def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
+    """Return the node of a letter that can only be the imaginary unit, because of the other formulas; or None."""
+    own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
+    if own is None:
+        return None
+    names = {node.value for node in nodes if node.kind == "name"} - {"pi"}
+    functions = {str(node.value) for node in nodes if node.kind == "call"}
+    is_alone = names == {letter} and not any(
+        first == own and second.kind == "number" for first, second in permutations(trees, 2)
+    )
+    has_both = bool(functions & {*CIRCULAR}) and bool(functions & {*HYPERBOLIC}) and any(
+        node.kind == "call" and node.value in (*CIRCULAR, *HYPERBOLIC) and _letter_in(node.args[0], letter)
+        for node in nodes
+    )  # fmt: skip
+    sums = [node for node in nodes if node.kind == "sum" and _letter_in(node, letter)]
+    has_conjugates = any(_conjugate(node, letter) in sums for node in sums)
+    return own if (is_alone or has_both or has_conjugates) and len(functions & {"diff", "Matrix"}) == 0 else None
+
+
+def _conjugate(node: Node, letter: str) -> Node:
+    """Return a sum in which the terms with the imaginary unit have the other sign."""
+    return sum_of([negated(term) if _letter_in(term, letter) else term for term in node.args], node.span)
+
+
+def _exponent(node: Node) -> Node | None:
+    """Return x of exp(x) and of e^x; None for any other formula."""
+    if node.kind == "call" and node.value == "exp" and node.args:
+        return node.args[0]
+    is_power = node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e")
+    return node.args[1] if is_power else None
+
+
+def _letter_in(tree: Node, letter: str) -> Node | None:
+    return next((node for _, node in walk(tree) if (node.kind, node.value) == ("name", letter)), None)
+
+
+def _factor_of_sines(node: Node, letter: str) -> Node | None:
+    own = [factor for factor in node.args if (factor.kind, factor.value) == ("name", letter)]
+    others = [factor for factor in node.args if factor not in own and factor.kind != "number"]
+    sines = all(factor.kind == "call" and factor.value in ("sin", "cos") for factor in others)
+    return own[0] if own and others and sines else None
+
+
+def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
+    """Return an equation of two columns, each with the real and the imaginary part of one side.
+
+    A side that is a single name stays as it is, since such an equation only names the other side.
+
+    Raises
+    ------
+    InputError
+        For a function whose parts are not known.
+    """
+    sign, *sides = relation
+    split = _Splitter(letter, source)
+    if any(side.kind == "name" and side.value != letter for side in sides):
+        left, right = (side if side.kind == "name" else _column(split.parts(side)) for side in sides)
+        return sign, left, right
+    left_parts, right_parts = (split.parts(side) for side in sides)
+    return sign, _column(left_parts), _column(right_parts)
+
+
+def _column(parts: Parts) -> Node:
+    return Node("call", "Matrix", (Node("list", ("[", "]"), parts),))
+
+
+def _is_zero(tree: Node) -> bool:
+    return tree == ZERO
+
+
+def _times(left: Parts, right: Parts) -> Parts:
+    (a, b), (c, d) = left, right
+    return _plus(_of(a, c), negated(_of(b, d))), _plus(_of(a, d), _of(b, c))
+
+
+def _of(a: Node, b: Node) -> Node:
+    if _is_zero(a) or _is_zero(b):
+        return ZERO
+    return product([factor for factor in (a, b) if factor != ONE] or [ONE])
+
+
+def _plus(*terms: Node) -> Node:
+    rest = [term for term in terms if not _is_zero(term.args[0] if term.kind == "neg" else term)]
+    return sum_of(rest) if rest else ZERO
+
+
+def _square(a: Node) -> Node:
+    return ZERO if _is_zero(a) else Node("power", None, (a, number(2)))
+
+
+class _Splitter:
+    """The rules by which formulas are split into parts; every letter other than the imaginary unit is real."""
+
+    def __init__(self, letter: str, source: str) -> None:
+        self.letter, self.source = letter, source
+
+    def fail(self, node: Node, expected: str) -> InputError:
+        return complaint(self.source, "", node.span[0], expected)
+
+    def parts(self, node: Node) -> Parts:
+        if node.kind == "name" and node.value == self.letter:
+            return ZERO, ONE
+        if (exponent := _exponent(node)) is not None:
+            a, b = self.parts(exponent)
+            size = Node("call", "exp", (a,))
+            return (size, ZERO) if _is_zero(b) else (_of(ONE if _is_zero(a) else size, _call("cos", b)),
+                                                     _of(ONE if _is_zero(a) else size, _call("sin", b)))  # fmt: skip
+        if _letter_in(node, self.letter) is None:
+            return node, ZERO
+        inner = [self.parts(child) for child in node.args]
+        rule = self.rules.get(node.kind if node.kind != "call" else str(node.value))
+        if rule is None:
+            raise self.fail(node, "a formula whose real and imaginary parts are known, such as exp, sin and powers,")
+        return rule(self, node, inner)
+
+    def sum(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return _plus(*(a for a, _ in inner)), _plus(*(b for _, b in inner))
+
+    def negative(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return negated(a), negated(b)
+
+    def product(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return reduce(_times, inner)
+
+    def inverse(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        if _is_zero(a):
+            return ZERO, negated(Node("inv", None, (b,)))
+        below = Node("inv", None, (_plus(_square(a), _square(b)),))
+        return _of(a, below), negated(_of(b, below))
+
+    def power(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        base, (exponent, imaginary) = inner
+        negative = exponent.kind == "neg"
+        value = exponent.args[0] if negative else exponent
+        whole = value.kind == "number" and value.value.denominator == 1 and 0 < value.value <= MOST_FACTORS
+        if not whole or not _is_zero(imaginary):
+            raise self.fail(node, f"a whole number up to {MOST_FACTORS} as the power of a complex number")
+        raised = reduce(_times, [base] * int(value.value))
+        return self.inverse(node, [raised]) if negative else raised
+
+    def absolute(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return Node("call", "sqrt", (_plus(_square(a), _square(b)),)), ZERO
+
+    def sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("sin", a), _call("cosh", b)), _of(_call("cos", a), _call("sinh", b))
+
+    def cosine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("cos", a), _call("cosh", b)), negated(_of(_call("sin", a), _call("sinh", b)))
+
+    def hyperbolic_sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("sinh", a), _call("cos", b)), _of(_call("cosh", a), _call("sin", b))
+
+    def hyperbolic_cosine(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return _of(_call("cosh", a), _call("cos", b)), _of(_call("sinh", a), _call("sin", b))
+
+    def tangent(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return _times(self.sine(node, inner), self.inverse(node, [self.cosine(node, inner)]))
+
+    def hyperbolic_tangent(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        return _times(self.hyperbolic_sine(node, inner), self.inverse(node, [self.hyperbolic_cosine(node, inner)]))
+
+    rules: ClassVar[Mapping[str, Callable[["_Splitter", Node, Sequence[Parts]], Parts]]] = {
+        "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute, "sin": sine,
+        "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
+    }  # fmt: skip
+    """Kind of a formula, or the function that it calls -> the rule for its parts."""
+
+
+def _call(name: str, argument: Node) -> Node:
+    return Node("call", name, (argument,))

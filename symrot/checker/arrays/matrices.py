@@ -1,0 +1,194 @@
+"""Names that a text uses as matrices and columns without a definition, and names of vectors that mean lengths.
+
+``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` make matrices of 3 x 3 entries of the capital letters; a small letter
+with a transpose is a column.
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from symrot.checker.claim.shapes import Shape, shape_of
+from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.vectors import is_tensor
+
+__all__ = [
+    "as_rotations", "bold_matrices", "matrices_of_entries", "matrix_of_entries", "used_columns", "used_matrices",
+    "with_lengths",
+]  # fmt: skip
+
+OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
+UNIT_NAMES = ("I", "E", "I_3", "E_3")
+COLUMN = (3, 1)
+
+
+TIME = Node("name", "t")
+
+
+def matrix_of_entries(name: str, timed: bool = False) -> Node:
+    """Return the tree of a matrix with the entries A_11, A_12 and so on, which depend on time if it is ``timed``."""
+    kind, args = ("call", (TIME,)) if timed else ("name", ())
+    rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
+    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
+
+
+def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
+    """Return the names that are defined as matrices of 3 x 3 independent entries."""
+    return [name for name, tree in definitions if tree == matrix_of_entries(name)]
+
+
+def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
+    """Return definitions in which the matrices ``names`` are general rotations."""
+    return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
+
+
+def _rotation(name: str) -> Node:
+    """Return the tree of the product of three rotations about z, x and z."""
+    turns = [Node("call", f"R{axis}", (Node("name", f"{name}_angle{n}"),)) for n, axis in enumerate("zxz", 1)]
+    return Node("product", None, tuple(turns))
+
+
+def _list(members: Sequence[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))
+
+
+def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
+    """Return the names, in capital letters, that the sides of a claim use as matrices and that are not ``known``.
+
+    The name of the unit matrix is not among them, unless it is the only argument of a determinant or trace.
+    """
+    names: dict[str, None] = {}
+    for side in sides:
+        for _, node in walk(side):
+            inside = _of_matrix(node)
+            alone = [part for part in inside if part.kind == "name" and node.kind == "call"]
+            for part in inside:
+                for leaf in _factors(part):
+                    is_unit = leaf in UNIT_NAMES and not (len(alone) == len(inside) == 1)
+                    if leaf[0].isupper() and leaf not in known and not is_unit:
+                        names[leaf] = None
+    return tuple(names)
+
+
+def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
+    """Return the names of vectors, in capital letters, that are in fact matrices, and whether each depends on time.
+
+    Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``.
+    """
+    matrices: dict[str, bool] = {}
+    nodes = [node for side in sides for _, node in walk(side)]
+    for node in nodes:
+        for first, second in pairwise(node.args if node.kind == "product" else ()):
+            name = _name_of_array(first)
+            if name[:1].isupper() and name in vectors and not is_tensor(name) and _is_array(second, vectors):
+                rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
+                matrices[name] = name in rates
+    return matrices
+
+
+def _name_of_array(node: Node) -> str:
+    """Return the name A of A, A^T, A^-1 and of the rate of A; an empty text for any other formula."""
+    inner = node.args[0] if node.kind in ("transpose", "power") or node.value == "diff" else node
+    return str(inner.value) if inner.kind == "name" else ""
+
+
+def _is_array(node: Node, vectors: Collection[str]) -> bool:
+    return _name_of_array(node) in vectors or (node.kind == "call" and node.value in ("skew", "cross"))
+
+
+def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
+    """Return the names, in small letters, that the sides of a claim use as columns: ``r^T r`` and ``(R v)^T``."""
+    names: dict[str, None] = {}
+    for side in sides:
+        for _, node in walk(side):
+            if node.kind == "transpose":
+                names |= {leaf: None for leaf in _factors(node.args[0]) if leaf[0].islower() and leaf not in known}
+    return tuple(names)
+
+
+def _of_matrix(node: Node) -> Sequence[Node]:
+    """Return the formulas in a node that are matrices by their place: under a transpose, or in ``A B A^T``."""
+    if node.kind == "transpose" or (node.kind == "call" and node.value in OF_MATRICES):
+        return node.args
+    if node.kind == "call" and node.value in ("cross", "dot") and all(side.kind == "product" for side in node.args):
+        first, second = (side.args[0] for side in node.args)
+        is_one = first == second and first.kind == "name" and first.value[0].isupper()
+        return (first,) if is_one else ()  # R a x R b, and R a . R b
+    factors = [factor for factor in node.args if factor.kind != "number"] if node.kind == "product" else []
+    if len(factors) > 2:
+        if forms := _of_form(factors):
+            return forms
+        first, *between, last = factors
+        for matrix, inverse in ((first, last), (last, first)):
+            is_inverse = inverse.kind in ("transpose", "power") or inverse.value in OF_MATRICES
+            if is_inverse and inverse.args[0] == matrix and matrix.kind == "name" and matrix.value[0].isupper():
+                return matrix, *(factor for factor in between if factor.kind == "name")
+    return ()
+
+
+def _of_form(factors: Sequence[Node]) -> list[Node]:
+    """Return the names in capital letters between a transposed column and a column: A in ``a^T A b``."""
+    first, *between, last = factors
+    columns = [first.args[0] if first.kind == "transpose" else number(0), last]
+    if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
+        return []
+    return [name for name in between if name.kind == "name" and name.value[0].isupper() and not is_tensor(name.value)]
+
+
+def _factors(node: Node) -> Iterator[str]:
+    """Yield the names that are factors or terms in a formula, outside of functions."""
+    if node.kind == "name":
+        yield str(node.value)
+    elif node.kind in ("sum", "product", "neg", "transpose") or (node.kind == "power" and node.args[1].kind != "name"):
+        for child in node.args:
+            yield from _factors(child)
+
+
+def with_lengths(
+    relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
+) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
+    """Return a relation with lengths in place of vectors where only a scalar makes sense, and these vectors' names.
+
+    Only a scalar makes sense in a product of two columns, ``a b sin(x)``, and in a sum with a scalar.
+    """
+    lengths = _Lengths(shapes)
+    sign, left, right = relation
+    left, right = lengths.read(left), lengths.read(right)
+    shape_left, shape_right = shape_of(left, shapes), shape_of(right, shapes)
+    if shape_left is None and shape_right == COLUMN and left.kind != "name":
+        right = lengths.scalar(right)
+    elif shape_right is None and shape_left == COLUMN and right.kind not in ("name", "number"):
+        left = lengths.scalar(left)
+    return (sign, left, right), tuple(dict.fromkeys(lengths.names))
+
+
+class _Lengths:
+    """The change of vectors into their lengths; ``names`` collects the vectors that were changed."""
+
+    def __init__(self, shapes: Mapping[str, Shape]) -> None:
+        self.shapes = shapes
+        self.names: list[str] = []
+
+    def read(self, node: Node) -> Node:
+        node = replace(node, args=tuple(self.read(child) for child in node.args))
+        own = [shape_of(child, self.shapes) for child in node.args]
+        if node.kind == "product" and own.count(COLUMN) > 1 and {*own} <= {COLUMN, None}:
+            return self.scalar(node)
+        if node.kind == "sum" and None in own and COLUMN in own and not _has_added_name(node):
+            return replace(node, args=tuple(self.scalar(child) for child in node.args))
+        return node
+
+    def scalar(self, node: Node) -> Node:
+        """Return a tree in which the length replaces each vector that is a factor."""
+        if node.kind == "name" and self.shapes.get(str(node.value)) == COLUMN:
+            self.names.append(str(node.value))
+            return Node("call", "sqrt", (Node("call", "dot", (node, node), node.span),), node.span)
+        if node.kind in ("product", "neg", "inv") or (node.kind == "power" and node.args[1].kind == "number"):
+            return replace(node, args=tuple(self.scalar(child) for child in node.args))
+        return node
+
+
+def _has_added_name(node: Node) -> bool:
+    """Return whether a term of a sum is a single name, which may be a vector too: ``a + b``."""
+    bare = [term.args[0] if term.kind == "neg" else term for term in node.args]
+    return any(term.kind == "name" and not is_tensor(str(term.value)) for term in bare)

@@ -1,0 +1,254 @@
+"""Quaternions that a text uses without a definition: ``q ⊗ p``, ``q v q*``, the conjugate, the inverse and the norm.
+
+A quaternion q has the scalar part q_0 and the vector part q_1, q_2, q_3, or a vector that the text names q_v; products
+are Hamilton's. A vector in a product is the quaternion with the scalar part zero.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from symrot.checker.claim.shapes import Shape, shape_of
+from symrot.checker.claim.tree import Node, number, product, walk
+
+__all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
+
+TIME = Node("name", "t")
+CONJUGATE, PRODUCT = "conjugate", "qmul"
+UNITS = {"i": 1, "j": 2, "k": 3}
+"""Name of a unit -> its place among the components."""
+
+ENDINGS = ("_vec", "_v", "v")
+"""Endings of a name for the vector part of a quaternion."""
+
+
+@dataclass(frozen=True)
+class Quaternions:
+    """The quaternions of a relation: the relation with their products, the definitions of their names, and notes.
+
+    ``vectors`` are the names of vectors in products with quaternions.
+    """
+
+    relation: tuple[str, Node, Node]
+    definitions: tuple[tuple[str, Node], ...] = ()
+    vectors: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def used_quaternions(
+    relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
+) -> Quaternions:
+    """Return the quaternions that a relation uses and that are not ``known`` by a definition.
+
+    Parameters
+    ----------
+    relation : Relation
+    vectors : collection of str
+        The names that are vectors.
+    shapes : mapping
+        The shapes of the names that are defined.
+    known : collection of str
+        The names that are defined.
+    """
+    sign, *sides = relation
+    if _has_units(sides, (*vectors, *known)):
+        return _of_units(relation)
+    names = _quaternion_names(sides, vectors, shapes, known)
+    if not names and not any(node.value == CONJUGATE for side in sides for _, node in walk(side)):
+        return Quaternions(relation)
+    reader = _Products(names, {*vectors})
+    sides = [reader.read(side) for side in sides]
+    if any(shape_of(side, reader.shapes(shapes)) == (4, 1) for side in sides):
+        reader.pure |= {str(part.value): None for side in sides for part in _vector_of_pair(side)}
+    left, right = _of_one_shape(sides, reader.shapes(shapes))
+    used = {str(node.value) for side in (left, right) for _, node in walk(side) if node.kind == "name"}
+    moving = any(node.kind == "call" and node.value == "diff" for side in sides for _, node in walk(side))
+    definitions = [part for name in names for part in _definitions(name, used, moving)]
+    lefts, rights = (
+        _with_time(side, {n for n in used if n not in dict(definitions)}, names, moving) for side in (left, right)
+    )
+    first = names[0] if names else ""
+    parts = dict(definitions).get(first)
+    notes = [f"{first} is a quaternion with the scalar part {first}_0 and Hamilton's product"] if parts else []
+    return Quaternions((sign, lefts, rights), tuple(definitions), tuple(reader.pure), tuple(notes))
+
+
+def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
+    """Return whether the only names of a claim are the quaternions i, j and k, as in ``i² = j² = -1``, ``i j = k``."""
+    nodes = [node for side in sides for _, node in walk(side)]
+    names = {str(node.value) for node in nodes if node.kind == "name"}
+    squares = any(node.kind == "power" for node in nodes)
+    plain = {node.kind for node in nodes} <= {"name", "number", "neg", "product", "power", "sum"}
+    return plain and bool(names) and names <= {*UNITS} - {*others} and (len(names) > 1 or (squares and names != {"i"}))
+
+
+def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
+    """Return a relation between i, j and k, with these units as quaternions."""
+    sign, left, right = relation
+    reader = _Products(tuple(UNITS), set())
+    sides = [reader.read(_without_squares(side)) for side in (left, right)]
+    first, second = _of_one_shape(sides, reader.shapes({}))
+    used = {str(node.value) for side in (first, second) for _, node in walk(side) if node.kind == "name"}
+    definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
+    note = "i, j and k are the units of quaternions, with i j = k"
+    return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
+
+
+def _without_squares(node: Node) -> Node:
+    args = tuple(map(_without_squares, node.args))
+    if node.kind == "power" and args[1] == number(2):
+        return product([args[0], args[0]], node.span)
+    return replace(node, args=args)
+
+
+def quaternion_product(left: Node, right: Node) -> Node:
+    """Return the tree of the product of two quaternions, with the scalar factors of the left side in front.
+
+    Examples
+    --------
+    >>> from symrot.checker.claim.tree import text
+    >>> text(quaternion_product(product([Node("inv", None, (number(2),)), Node("name", "q")]), Node("name", "p")))
+    '1/2*qmul(q, p)'
+    """
+    scalars = [factor for factor in left.args[:-1] if left.kind == "product"]
+    first = left.args[-1] if left.kind == "product" else left
+    return product([*scalars, Node("call", PRODUCT, (first, right))])
+
+
+def _bare(node: Node) -> Node:
+    """Return the node of the name q for q(t), and any other node unchanged."""
+    return Node("name", node.value, (), node.span) if node.kind == "call" and node.args == (TIME,) else node
+
+
+def _quaternion_names(
+    sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
+) -> tuple[str, ...]:
+    """Return the names of the quaternions of a claim, in order."""
+    names: dict[str, None] = {}
+
+    def add(node: Node) -> None:
+        bare = _bare(node)
+        if bare.kind == "name" and bare.value not in (*vectors, *known, "t") and bare.value not in names:
+            names[str(bare.value)] = None
+
+    everything = [node for side in sides for _, node in walk(side)]
+    for node in everything:
+        if node.kind == "call" and node.value == PRODUCT:
+            for factor in node.args:
+                add(factor)
+        elif node.kind == "call" and node.value == CONJUGATE:
+            add(node.args[0])
+    used = {str(node.value) for node in everything if node.kind == "name"}
+    for node in everything:
+        if node.kind == "call" and node.value == "sqrt" and node.args[0].kind == "call" and node.args[0].value == "dot":
+            inner = _bare(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
+            if f"{inner.value}_bar" in used:
+                add(inner)
+    for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
+        two = side.kind == "product" and len(side.args) == 2 and all(factor.kind == "name" for factor in side.args)
+        components = two and all({f"{factor.value}_0", f"{factor.value}0"} & used for factor in side.args)
+        if components and _is_list(other):
+            for factor in side.args:
+                add(factor)
+    return tuple(names)
+
+
+def _vector_of_pair(node: Node) -> Sequence[Node]:
+    """Return the name of the vector in a quaternion ``(0, v)``, written as a scalar and a vector."""
+    inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
+    is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
+    return inside.args[1:] if is_pair else ()
+
+
+def _is_list(node: Node) -> bool:
+    return node.kind == "list" or (node.kind == "call" and node.value == "Matrix")
+
+
+class _Products:
+    """The reader of products with quaternions."""
+
+    def __init__(self, names: Sequence[str], vectors: set[str]) -> None:
+        self.names, self.vectors = names, vectors
+        self.pure: dict[str, None] = {}
+
+    def shapes(self, others: Mapping[str, Shape]) -> dict[str, Shape]:
+        return {**others, **dict.fromkeys((*self.vectors, *self.pure), (3, 1)), **dict.fromkeys(self.names, (4, 1))}
+
+    def is_quaternion(self, node: Node) -> bool:
+        bare = _bare(node)
+        if bare.kind == "name":
+            return bare.value in self.names
+        if bare.kind == "power":
+            return self.is_quaternion(bare.args[0])
+        inner = bare.args[:1] if bare.value == "diff" else ()
+        return bare.kind == "call" and (bare.value in (PRODUCT, CONJUGATE) or any(map(self.is_quaternion, inner)))
+
+    def read(self, node: Node) -> Node:
+        node = _bare(node)
+        if node.kind == "name" and str(node.value).removesuffix("_bar") in self.names:
+            name = str(node.value).removesuffix("_bar")
+            own = Node("name", name, (), node.span)
+            return own if name == node.value else Node("call", CONJUGATE, (own,), node.span)
+        if node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),))):
+            base = self.read(node.args[0])
+            if self.is_quaternion(base):
+                norm = Node("call", "dot", (base, base))
+                return product([Node("call", CONJUGATE, (base,)), Node("inv", None, (norm,))], node.span)
+            return replace(node, args=(base, node.args[1]))
+        args = tuple(self.read(child) for child in node.args)
+        node = replace(node, args=args)
+        if node.kind == "call" and node.value == PRODUCT:
+            self.pure |= {str(part.value): None for factor in args for part in _vector_of_pair(factor)}
+        if node.kind == "call" and node.value == "abs" and self.is_quaternion(args[0]):
+            return Node("call", "sqrt", (Node("call", "dot", (args[0], args[0])),), node.span)
+        return self.multiplied(node) if node.kind == "product" else node
+
+    def multiplied(self, node: Node) -> Node:
+        """Return a product in which quaternions and the vectors between them are multiplied by Hamilton's rule."""
+        places = [n for n, factor in enumerate(node.args) if self.is_quaternion(factor)]
+        if len(places) < 2:
+            return node
+        between = node.args[places[0] : places[-1] + 1]
+        for factor in between:
+            if factor.kind == "name" and factor.value not in self.names and factor.value not in self.vectors:
+                self.pure[str(factor.value)] = None
+        value = between[0]
+        for factor in between[1:]:
+            value = Node("call", PRODUCT, (value, factor), node.span)
+        rest = [*node.args[: places[0]], *node.args[places[-1] + 1 :]]
+        return product([*rest, value], node.span) if rest else value
+
+
+def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
+    """Return both sides as quaternions: ``1`` becomes (1, 0, 0, 0), and a vector v becomes (0, v)."""
+    made = []
+    for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
+        own, opposite = shape_of(side, shapes), shape_of(other, shapes)
+        if opposite == (4, 1) and own is None and not _is_list(side) and side.kind != "name":
+            side = Node("call", "Matrix", (Node("list", ("[", "]"), (side, *[number(0)] * 3)),), side.span)
+        elif own == (4, 1) and opposite in ((3, 1), None) and (opposite or other.kind == "name"):
+            side = Node("call", "vector_part", (side,), side.span)
+        made.append(side)
+    return made[0], made[1]
+
+
+def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
+    """Return the definition of a quaternion, and the definition of its vector part if the text names this part."""
+    style = "" if f"{name}0" in used or f"{name}1" in used else "_"
+    parts = [
+        Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
+    ]
+    own = [(name, _column(parts))]
+    vector = next((f"{name}{ending}" for ending in ENDINGS if f"{name}{ending}" in used), "")
+    return [(vector, _column(parts[1:])), *own] if vector else own
+
+
+def _column(parts: Sequence[Node]) -> Node:
+    return Node("call", "Matrix", (Node("list", ("[", "]"), tuple(parts)),))
+
+
+def _with_time(node: Node, used: Collection[str], names: Sequence[str], moving: bool) -> Node:
+    """Return a tree in which the components of moving quaternions are functions of time."""
+    components = {f"{name}{style}{n}" for name in names for style in ("", "_") for n in range(4)}
+    if moving and node.kind == "name" and node.value in components:
+        return Node("call", node.value, (TIME,), node.span)
+    return replace(node, args=tuple(_with_time(child, used, names, moving) for child in node.args))

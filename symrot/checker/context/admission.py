@@ -1,0 +1,219 @@
+"""Whether a derived formula fits the context of a claim, and which words of its name the context leaves open.
+
+The place of an axis is the point through which it passes; the titles of places are phrases such as "about an end".
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from symrot.checker.context.context import Context, Meaning
+from symrot.checker.context.quantities import PLACES, plain_words
+from symrot.conventions import SEQUENCES
+
+__all__ = [
+    "COMPONENTS",
+    "EXCHANGED",
+    "admits_letters",
+    "admits_name",
+    "guesses",
+    "has_order",
+    "is_component",
+    "is_place",
+    "misfits",
+    "same_rotation",
+]
+
+_FRAME = re.compile(r"\b(body|space)[ -]frame")
+_STOP = frozenset({
+    "relation", "of", "in", "and", "or", "from", "with", "for", "to", "that", "which", "what", "is", "by", "as",
+    "at", "about", "along", "across", "the", "a", "an", "its", "their", "on", "whose", "any", "axes", "axis",
+    "frame", "body", "two", "one", "another", "other", "euler's", "equations", "equation", "solved", "rates",
+    "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
+    "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
+})  # fmt: skip
+"""Words in the names of derived formulas that distinguish no formulas for one quantity."""
+
+
+COMPONENTS = {
+    "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
+}  # fmt: skip
+"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
+
+INDICES = frozenset("xyz0123")
+
+
+def frame_of(name: str) -> str:
+    """Return the frame in the name of a derived formula, ``"body"``, ``"space"`` or an empty text."""
+    match = _FRAME.search(name)
+    return match[1] if match else ""
+
+
+def sequence_of(name: str) -> str:
+    """Return the sequence of angles in the name of a derived formula, or an empty text."""
+    return next((word for word in re.findall(r"[A-Za-z]+", name) if word in SEQUENCES), "")
+
+
+def place_of(name: str) -> str:
+    """Return the title of the place of an axis in the name of a derived formula, or an empty text."""
+    places = [(phrase, title) for title, _, phrases in PLACES for phrase in phrases if phrase in name]
+    return max(places, key=lambda pair: len(pair[0]))[1] if places else ""
+
+
+def admits_name(context: Context, name: str, quantity: str) -> bool:
+    """Return whether a derived formula with a name may be the formula for a quantity in a context."""
+    return not any(misfits(context, name, quantity))
+
+
+def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
+    """Yield words of a derived formula's name that contradict the context: "for the space frame", "about an end"."""
+    is_relation = name.startswith("relation for ") or not quantity
+    meaning = None if is_relation else context.meaning_of(quantity)
+    if not is_relation and not is_component(name, quantity):
+        yield "for another component"
+    frame, sequence, place = frame_of(name), sequence_of(name), place_of(name)
+    if meaning is None and "component of the angle rates" in name and has_order(sequence):
+        yield from () if name.startswith(PLACE_OF_RATE.get(quantity, "")) else ("for another angle",)
+    expected = context.frame or (meaning.frame if meaning else "")
+    if expected and frame and frame != expected:
+        yield f"for the {frame} frame"
+    if context.sequence and sequence and sequence not in (context.sequence, same_rotation(context.sequence)):
+        yield f"for the sequence {sequence}"
+    for body in (context.body, meaning.body if meaning else None):
+        if body is not None and not body.has(name):
+            yield "of another body"
+    own_place = (meaning.place if meaning else "") or context.place
+    if own_place and place and place != own_place and place_exists(own_place):
+        yield place
+    phrases = meaning.quantity.formulas if meaning is not None else ()
+    if phrases and not any(phrase in name for phrase in phrases):
+        yield "for another quantity"
+
+
+def is_component(name: str, quantity: str) -> bool:
+    """Return whether the component or axis in the name of a formula is the one in the name of a quantity.
+
+    A quantity without an index may be any component, and so may the rate of an angle.
+    """
+    axis = re.search(r", ([xyz]) axis", name)
+    word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
+    index = quantity[-1:]
+    is_indexed = len(quantity) > 1 and not quantity.startswith("d") and index in INDICES
+    return not is_indexed or word not in COMPONENTS or index in COMPONENTS[word]
+
+
+def place_exists(place: str) -> bool:
+    """Return whether the names of some derived formulas contain the place with this title."""
+    return any(title == place and phrases for title, _, phrases in PLACES)
+
+
+def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
+    """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
+
+    ``mapping`` gives the renamed symbols; any other letter of the claim is the symbol of the same name.
+    """
+    pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
+    renamed = {new for _, new in pairs}
+    parts = {re.sub(r"_?[xyz1-3]$", "", new) for new in renamed}
+    pairs += [(letter, letter) for letter in map(plain, letters) if letter not in renamed | parts]
+    for symbol, letter in pairs:
+        meaning = context.meaning_of(letter)
+        if meaning is None and {symbol[:1], letter[:1]} == {"d"} and (of_angle := context.meaning_of(letter[1:])):
+            meaning, symbol = of_angle, symbol[1:]
+        if meaning is not None and context.sequence == "xyz" and meaning.quantity.title in ("yaw", "roll"):
+            symbol = {"phi": "psi", "psi": "phi"}.get(symbol, symbol)
+        if meaning is None and has_order(context.sequence) and {symbol, letter} in EXCHANGED:
+            return False
+        if meaning is not None and not _is_symbol_of(meaning, symbol):
+            return False
+    if context.body is None:
+        return True
+    own = dict(pairs)
+    inverse = {new: known for known, new in pairs}
+    return all(
+        own.get(symbol, letter) == letter and (symbol in own or inverse.get(letter, symbol) == symbol)
+        for symbol, letter in context.body.letters.items()
+    )
+
+
+EXCHANGED = ({"phi", "psi"}, {"dphi", "dpsi"})
+"""Letters of the first and the third angle, and of their rates."""
+
+PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
+
+
+def has_order(sequence: str) -> bool:
+    """Return whether every reader takes phi as the first angle of a sequence and psi as the third: ZXZ, not ZYX."""
+    return bool(sequence) and sequence[0] == sequence[-1]
+
+
+def same_rotation(sequence: str) -> str:
+    """Return the sequence about fixed axes that equals one about moving axes with its angles reversed; or vice versa.
+
+    The result is an empty text for a sequence such as ZXZ.
+
+    Examples
+    --------
+    >>> same_rotation("ZYX"), same_rotation("ZXZ")
+    ('xyz', '')
+    """
+    return "" if has_order(sequence) else sequence[::-1].swapcase()
+
+
+def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
+    """Return whether a symbol of derived formulas can be what words say: ``dphi`` is a rate of precession."""
+    pattern = meaning.quantity.symbols
+    if not pattern:
+        return True
+    is_rate = any(re.fullmatch(r"d(phi|theta|psi|alpha|beta|gamma|varphi)", name) for name in meaning.names)
+    if is_rate and symbol == "omega_3":
+        return False  # the spin is the rate of the spin angle plus a part of the precession
+    return re.fullmatch(pattern, symbol) is not None
+
+
+def plain(name: str) -> str:
+    """Return the name of a symbol, a function of time or its rate: x for x(t), dx for its derivative."""
+    rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
+    return "d" * rate[3].count("t") + rate[1] if rate else name.removesuffix("(t)")
+
+
+def guesses(context: Context, name: str, stated: str) -> list[str]:
+    """Return the words in the name of a derived formula that neither the context nor the quantity's name implies.
+
+    ``stated`` are the words that the quantity's name implies, such as "moment of inertia z axis" for I_zz.
+    """
+    words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
+    for meaning in context.meanings:
+        words += [*meaning.quantity.phrases, *meaning.quantity.formulas, meaning.place, meaning.rest, meaning.frame]
+    for body in [context.body, *(meaning.body for meaning in context.meanings)]:
+        if body is not None:
+            words += [*body.kind.formulas, *body.kind.phrases, body.motion, body.rest, "rolls" * bool(body.motion)]
+            words += [body.place]
+    if context.sequence:
+        words += ["intrinsic extrinsic", same_rotation(context.sequence)]
+    own = {word for text in words for word in _tokens(text)}
+    own |= {word for title, _, phrases in PLACES if title in words for phrase in phrases for word in _tokens(phrase)}
+    frame = frame_of(name)
+    stated_frames = {context.frame, *(meaning.frame for meaning in context.meanings)}
+    open_words = [word for word in dict.fromkeys(_tokens(name.replace("body to space", ""))) if word not in own]
+    open_words = [word for word in open_words if word != "space"]
+    place = place_of(name)
+    words_of_place = {word for title, _, phrases in PLACES if title == place for p in phrases for word in _tokens(p)}
+    stated_places = {context.place, *(meaning.place for meaning in context.meanings)}
+    stated_places |= {meaning.body.place for meaning in context.meanings if meaning.body}
+    if place and place not in stated_places:
+        open_words = [*(word for word in open_words if word not in words_of_place), place]
+    return [*open_words, *([f"in the {frame} frame"] if frame and frame not in stated_frames else [])]
+
+
+def is_place(words: str) -> bool:
+    """Return whether words are the title of a place, such as "about an end"."""
+    return any(words == title for title, _, _ in PLACES)
+
+
+def _tokens(text: str) -> list[str]:
+    """Return the words of a text that distinguish formulas, in one spelling."""
+    return [
+        word
+        for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))
+        if word.strip("'") not in _STOP and len(word) > 1
+    ]

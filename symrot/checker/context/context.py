@@ -1,0 +1,444 @@
+"""What a person says about a claim in words: the context, read and checked for contradictions.
+
+With a context, a claim that only names a quantity can be decided: the words say which derived formula is meant.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.context.bodies import BODIES, Body, body_of_words
+from symrot.checker.context.quantities import (
+    AMBIGUOUS,
+    QUANTITIES,
+    Quantity,
+    place_of_words,
+    plain_words,
+    unused_words,
+)
+from symrot.checker.latex.reader import read_latex_formula
+from symrot.checker.units.units import conventional_unit, read_unit
+from symrot.conventions import SEQUENCES
+from symrot.errors import InputError
+
+__all__ = [
+    "FRAMES",
+    "NO_CONTEXT",
+    "Context",
+    "Meaning",
+    "letters_of",
+    "quantities_of",
+    "read_context",
+    "read_frame",
+    "read_sequence",
+]
+
+FRAMES = {
+    "body": ("body", "body frame", "body axes", "body-fixed", "b", "moving"),
+    "space": ("space", "space frame", "space axes", "space-fixed", "s", "inertial", "inertial frame", "fixed"),
+}
+"""A frame -> the words for it."""
+
+_FRAME_WORDS = (("body", r"in (the )?body( frame| axes)?"), ("space", r"in (the )?(space|inertial)( frame| axes)?"))
+
+SEQUENCE_WORDS = {
+    "yaw-pitch-roll": "ZYX", "aerospace": "ZYX", "aircraft": "ZYX", "tait-bryan": "ZYX", "roll-pitch-yaw": "xyz",
+    "rpy": "xyz", "ypr": "ZYX", "euler": "ZXZ",
+}  # fmt: skip
+"""Usual name of a sequence of angles -> the sequence."""
+
+RATES = ("rad/s", "rad/s^2", "W", "m/s", "m/s^2", "")
+"""The units of quantities that may be rates."""
+
+MOST_NAMES = 40
+MOST_NEAREST = 3
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What the words say about one name, or about several.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The names in the notation of trees, in all ways in which they can be read; a rate has ``d`` in front.
+    quantity : Quantity
+    place : str
+        The title of a place, such as "about an end", or an empty text.
+    body : Body or None
+        The body in the words.
+    frame : str
+        ``"body"``, ``"space"`` or empty.
+    written : tuple of str
+        The names as they were typed.
+    rest : str
+        The words that symrot does not use.
+    """
+
+    names: tuple[str, ...]
+    quantity: Quantity
+    place: str = ""
+    body: Body | None = None
+    frame: str = ""
+    written: tuple[str, ...] = ()
+    rest: str = ""
+
+    def is_of(self, name: str) -> bool:
+        """Return whether the words are about a name, or about the vector whose component the name is."""
+        stem = re.sub(r"_?[xyz1-3]$", "", name)
+        return name in self.names or stem in self.names or f"{stem}_i" in self.names
+
+
+@dataclass(frozen=True)
+class Context:
+    """The context of a claim: meanings of names, the body, the frame, and the sequence of Euler angles.
+
+    Attributes
+    ----------
+    meanings : tuple of Meaning
+    body : Body or None
+    frame : str
+        ``"body"``, ``"space"`` or empty.
+    sequence : str
+        One of :data:`symrot.conventions.SEQUENCES`, or empty.
+    """
+
+    meanings: tuple[Meaning, ...] = ()
+    body: Body | None = None
+    frame: str = ""
+    sequence: str = ""
+
+    def __bool__(self) -> bool:
+        return bool(self.meanings or self.body or self.frame or self.sequence)
+
+    def meaning_of(self, name: str) -> Meaning | None:
+        """Return what the words say about a name, or None."""
+        exact = (meaning for meaning in self.meanings if name in meaning.names)
+        return next(exact, None) or next((meaning for meaning in self.meanings if meaning.is_of(name)), None)
+
+    @property
+    def place(self) -> str:
+        """The place of the axis in the words about the body, such as "about an end", or an empty text."""
+        return self.body.place if self.body else ""
+
+    @property
+    def rest(self) -> tuple[str, ...]:
+        """The words of the context that symrot does not use."""
+        own = [meaning.rest for meaning in self.meanings] + ([self.body.rest] if self.body else [])
+        return tuple(words for words in own if words)
+
+    def fits(self, names: set[str]) -> bool:
+        """Return whether every name with a meaning is one of the ``names`` of a text."""
+        return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
+
+    def check_names(self, names: set[str]) -> None:
+        """Raise InputError for words about a name that a text does not have."""
+        for meaning in self.meanings:
+            if not any(meaning.is_of(name) for name in names):
+                raise InputError(f"where: expected words about names that the claim has, got {meaning.written[0]!r}")
+
+    def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
+        """Return the units of names that follow from their meanings.
+
+        Raises
+        ------
+        InputError
+            If ``explicit`` has another unit for a name.
+        """
+        units: dict[str, str] = {}
+        for name in names:
+            meaning = next((meaning for meaning in self.meanings if name in meaning.names), None)
+            if meaning is None or meaning.quantity.unit in ("", "1"):
+                continue
+            if name in explicit and read_unit(explicit[name], name) != read_unit(meaning.quantity.unit):
+                raise InputError(
+                    f"where: expected a quantity in {explicit[name]}, the unit stated for {meaning.written[0]}, "
+                    f"got {meaning.quantity.title!r}, which is in {meaning.quantity.unit}"
+                )
+            units[name] = meaning.quantity.unit
+        return units
+
+    @property
+    def echo(self) -> str:
+        """The context in one line, as it was understood."""
+        parts = [f"{', '.join(meaning.written)} = {_described(meaning)}" for meaning in self.meanings]
+        parts += [f"body {_described_body(self.body)}"] if self.body else []
+        parts += [f"{self.frame} frame"] if self.frame else []
+        parts += [f"sequence {self.sequence}"] if self.sequence else []
+        return "; ".join(parts)
+
+
+NO_CONTEXT = Context()
+
+
+def _described(meaning: Meaning) -> str:
+    body = f"of a {_described_body(meaning.body)}" if meaning.body else ""
+    frame = f"in the {meaning.frame} frame" if meaning.frame else ""
+    return " ".join(part for part in (meaning.quantity.title, body, meaning.place, frame) if part)
+
+
+def _described_body(body: Body) -> str:
+    letters = ", ".join(f"{letter} for {symbol}" for symbol, letter in body.letters.items())
+    motion = f" {'in general motion' if body.motion == 'general' else f'that {body.motion}'}" if body.motion else ""
+    place = f" {body.place}" if body.place else ""
+    return f"{body.kind.title}{motion}{place}" + (f" (with {letters})" if letters else "")
+
+
+def read_context(
+    where: Sequence[str] = (), body: str = "", frame: str = "", sequence: str = "", label: str = ""
+) -> Context:
+    """Return the context that words state.
+
+    Parameters
+    ----------
+    where : sequence of str
+        Texts ``"NAME = words"``, such as ``"I = moment of inertia about the centre"``.
+    body, frame, sequence : str
+        A body ("solid cylinder of radius r"), ``"body"`` or ``"space"``, and a sequence of angles ("ZXZ", "3-1-3").
+    label : str
+        The place of the words, for messages.
+
+    Raises
+    ------
+    InputError
+        For words that name nothing that symrot knows, and for words that contradict each other.
+
+    Examples
+    --------
+    >>> read_context(["I = moment of inertia about the centre"], body="rod").echo
+    'I = moment of inertia about the centre of mass; body thin rod'
+    """
+    prefix = f"{label}: " if label else ""
+    for key, value in (("body", body), ("frame", frame), ("sequence", sequence)):
+        if not isinstance(value, str):
+            raise InputError(f"{prefix}{key}: expected a text, got {value!r}")
+    if isinstance(where, str) or not all(isinstance(text, str) for text in where):
+        raise InputError(f"{prefix}where: expected a list of texts like 'I = moment of inertia', got {where!r}")
+    meanings = tuple(_meaning(text, f"{prefix}where: ") for text in where)
+    context = Context(
+        meanings,
+        _body(body, prefix) if body.strip() else None,
+        read_frame(frame, prefix) if frame.strip() else "",
+        read_sequence(sequence, prefix) if sequence.strip() else "",
+    )
+    _check_consistency(context, prefix)
+    return context
+
+
+def _meaning(text: str, prefix: str) -> Meaning:
+    """Return the meaning of one text ``NAME = words``, or ``NAME, NAME = words``."""
+    left, sign, words = text.partition("=")
+    if not (left.strip() and sign and words.strip(" =")):
+        raise InputError(f"{prefix}expected 'NAME = words' like 'I = moment of inertia', got {text[:60]!r}")
+    written = tuple(part.strip() for part in left.split(",") if part.strip())
+    if len(written) > MOST_NAMES:
+        raise InputError(f"{prefix}expected at most {MOST_NAMES} names, got {len(written)}")
+    words = words.strip(" =")
+    if "=" in words:
+        raise InputError(
+            f"{prefix}expected the meaning of one name in a text, got {text[:60]!r}; write one text for each"
+        )
+    frame, rest = _frame_in(plain_words(words))
+    quantity, phrase = _quantity(rest, words, prefix)
+    rest = rest.replace(phrase, " ", 1)
+    place, rest = place_of_words(rest)
+    body = body_of_words(_original(rest, words)) if rest.strip() else None
+    if body is not None:
+        place, rest = place or body.place, body.rest
+    is_rate = quantity.unit in RATES
+    names = tuple(dict.fromkeys(name for part in written for name in _readings_of_name(part, prefix, is_rate)))
+    return Meaning(names, quantity, place, body, frame, written, unused_words(rest))
+
+
+def _original(rest: str, words: str) -> str:
+    """Return the remaining plain words with the letters in the case in which they were written."""
+    cases = {word.lower().strip(","): word.strip(",") for word in words.split()}
+    return " ".join(cases.get(word.strip(","), word) for word in rest.split())
+
+
+def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
+    """Yield the names that a text can mean: ``x'`` is the rate of x if it ``is_rate``, otherwise a name by itself."""
+    bare = part.rstrip("'\u2032")
+    primes = len(part) - len(bare)
+    latex = "\\" in bare or "{" in bare
+    try:
+        tree = read_expression(read_latex_formula(bare)[0] if latex else bare)
+    except InputError:
+        raise InputError(f"{prefix}expected a name before '=', got {part[:40]!r}") from None
+    name = _name(tree)
+    if name is None:
+        raise InputError(f"{prefix}expected a name before '=', got the formula {part[:40]!r}; write it with --given")
+    yield f"{'d' * primes}{name}" if is_rate else name + "_prime" * primes
+    if name.endswith("_dot"):
+        yield f"d{name.removesuffix('_dot')}"
+
+
+def quantities_of(tree: Node) -> Iterator[str]:
+    """Yield the names in a tree; a time derivative of x gives ``dx`` and x."""
+    for _, node in walk(tree):
+        if (name := _name(node)) is not None:
+            yield name
+
+
+def letters_of(tree: Node) -> Iterator[str]:
+    """Yield the quantities on which a tree depends; a time derivative of x gives ``dx`` alone."""
+    name = _name(tree)
+    if name is not None:
+        yield name
+    else:
+        for child in tree.args:
+            yield from letters_of(child)
+
+
+def _name(tree: Node) -> str | None:
+    """Return the name of a quantity, with ``d`` in front for each time derivative; None for a formula."""
+    if tree.kind == "name":
+        return str(tree.value)
+    if tree.kind == "call" and tree.value == "diff":
+        inner = _name(tree.args[0])
+        return None if inner is None else "d" * (len(tree.args) - 1) + inner
+    if tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]:
+        return str(tree.value)
+    return None
+
+
+def _frame_in(words: str) -> tuple[str, str]:
+    """Return the frame that words name, or an empty text, and the other words."""
+    for frame, pattern in _FRAME_WORDS:
+        if match := re.search(rf"\b{pattern}(?![\w-])", words):
+            return frame, words.replace(match[0], " ", 1)
+    return "", words
+
+
+def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
+    """Return the quantity that words name, and the phrase that names it."""
+    phrases = [
+        (match.start(), -len(phrase), phrase, quantity)
+        for quantity in QUANTITIES
+        for phrase in quantity.phrases
+        if (match := re.search(rf"(?<![\w-]){re.escape(phrase)}(?![\w-])", plain))
+    ]
+    if phrases:
+        start, _, phrase, quantity = min(phrases, key=lambda entry: entry[:2])
+        if not unused_words(plain[:start]):  # the quantity comes first: "mass" is not what "distance of the mass" names
+            return quantity, phrase
+    for word, instead in AMBIGUOUS.items():
+        if word in plain.split():
+            raise InputError(f"{prefix}expected {instead}, got {words[:60]!r}, which may be either")
+    everything = {phrase: phrase for quantity in QUANTITIES for phrase in quantity.phrases}
+    raise InputError(f"{prefix}expected words for a quantity, got {words[:60]!r}{_hint(plain, everything)}")
+
+
+def _hint(words: str, phrases: dict[str, str]) -> str:
+    """Return the end of a message that names the phrases which are most like some words."""
+    nearest = get_close_matches(words, phrases, MOST_NEAREST, 0.4)
+    whole = [phrase for phrase in phrases if set(words.split()) & set(phrase.split())]
+    names = list(dict.fromkeys(phrases[phrase] for phrase in [*nearest, *whole]))[:MOST_NEAREST]
+    names = names or ["moment of inertia", "torque", "rate of precession"]
+    return f" (write for example {', '.join(map(repr, names))})"
+
+
+def _body(words: str, prefix: str) -> Body:
+    """Return the body that words name, its letters in the notation of trees."""
+    body = body_of_words(words)
+    if body is None:
+        phrases = {phrase: phrase for kind in BODIES for phrase in kind.phrases}
+        raise InputError(f"{prefix}body: expected a body, got {words[:60]!r}{_hint(plain_words(words), phrases)}")
+    letters = {symbol: next(_readings_of_name(letter, prefix)) for symbol, letter in body.letters.items()}
+    return replace(body, letters=letters)
+
+
+def read_frame(words: str, prefix: str = "") -> str:
+    """Return ``"body"`` or ``"space"``.
+
+    Raises
+    ------
+    InputError
+        For other words.
+    """
+    for frame, phrases in FRAMES.items():
+        if words.strip().lower() in phrases:
+            return frame
+    raise InputError(f"{prefix}frame: expected 'body' or 'space', got {words[:40]!r}")
+
+
+def read_sequence(words: str, prefix: str = "") -> str:
+    """Return the sequence of angles that words name, one of :data:`symrot.conventions.SEQUENCES`.
+
+    Upper case and numbers mean rotations about moving axes; lower case or the word "space" means fixed axes.
+
+    Raises
+    ------
+    InputError
+        For words that name no sequence.
+
+    Examples
+    --------
+    >>> read_sequence("3-1-3"), read_sequence("zyx"), read_sequence("yaw-pitch-roll"), read_sequence("space 1-2-3")
+    ('ZXZ', 'zyx', 'ZYX', 'xyz')
+    """
+    plain = words.strip()
+    if plain.lower() in SEQUENCE_WORDS:
+        return SEQUENCE_WORDS[plain.lower()]
+    match = re.fullmatch(
+        r"(?:(body|space|intrinsic|extrinsic|fixed)[ -](?:three |two )?)?([xyzXYZ1-3])-?([xyzXYZ1-3])-?([xyzXYZ1-3])"
+        r"(?: \(?(intrinsic|extrinsic)\)?)?",
+        plain,
+    )
+    if match:
+        letters = "".join("XYZ"[int(part) - 1] if part.isdigit() else part for part in match.groups()[1:4])
+        kinds = [kind for kind in (match[1], match[5]) if kind]
+        name = _with_case(letters, kinds)
+        if name in SEQUENCES:
+            return name
+    raise InputError(
+        f"{prefix}sequence: expected three axes, no two neighbours equal, such as ZXZ or 3-1-3 (about moving axes) "
+        f"or zyx (about fixed axes), got {words[:40]!r}"
+    )
+
+
+def _with_case(letters: str, kinds: Sequence[str]) -> str:
+    """Return the letters of a sequence in upper case for moving axes, in lower case for fixed ones."""
+    fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
+    if len(fixed) > 1:
+        return ""
+    return letters if not fixed else letters.lower() if fixed == {True} else letters.upper()
+
+
+def _check_consistency(context: Context, prefix: str) -> None:
+    """Raise InputError if the words contradict each other, or the usual meaning of a name."""
+    seen: dict[str, Meaning] = {}
+    for meaning in context.meanings:
+        for name in meaning.names:
+            other = seen.setdefault(name, meaning)
+            if (other.quantity, other.place, other.frame) != (meaning.quantity, meaning.place, meaning.frame):
+                raise InputError(
+                    f"{prefix}where: expected one meaning of {meaning.written[0]}, "
+                    f"got {other.quantity.title!r} and {meaning.quantity.title!r}"
+                )
+        _check_unit(meaning, prefix)
+        if meaning.frame and context.frame and meaning.frame != context.frame:
+            raise InputError(
+                f"{prefix}frame: expected the {meaning.frame} frame, as the words about {meaning.written[0]} say, "
+                f"got {context.frame!r}"
+            )
+        if meaning.body and context.body and meaning.body.kind != context.body.kind:
+            raise InputError(
+                f"{prefix}body: expected a {meaning.body.kind.title}, as the words about {meaning.written[0]} say, "
+                f"got {context.body.kind.title!r}"
+            )
+
+
+def _check_unit(meaning: Meaning, prefix: str) -> None:
+    """Raise InputError if a name means a quantity with another unit to nearly every reader."""
+    for name in meaning.names:
+        usual = conventional_unit(name) if len(name) > 1 else None
+        own = meaning.quantity.unit
+        if usual and own and read_unit(own) != read_unit(usual) and "_prime" not in name:
+            raise InputError(
+                f"{prefix}where: expected a quantity in {usual}, as the name {meaning.written[0]} says, "
+                f"got {meaning.quantity.title!r}, which is in {own}"
+            )

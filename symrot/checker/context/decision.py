@@ -1,0 +1,489 @@
+"""Verdicts in a context: with the meaning of its names stated, a claim that names a quantity is true or false.
+
+A derived formula is meant if the context, or the name of the quantity, states every word of the formula's name. The
+claim is true if it is equal to such a formula, and false if it differs from all of them, for every assignment of its
+letters to their symbols. If some words are not stated, the verdict stays what it is without a context, and a note names
+these words.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Any
+
+from sympy import Expr, Function, Symbol
+
+from symrot import symbols
+from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.reader import read_expression, read_relation
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import Node, text
+from symrot.checker.context.admission import (
+    COMPONENTS,
+    EXCHANGED,
+    admits_letters,
+    admits_name,
+    guesses,
+    has_order,
+    is_component,
+    is_place,
+    misfits,
+    plain,
+    same_rotation,
+)
+from symrot.checker.context.bodies import bodies_of_formula
+from symrot.checker.context.context import Context, letters_of
+from symrot.checker.context.quantities import plain_words
+from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.recognition.identification import known_value
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.recognition.naming import verdict_on_name, words_of
+from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.repair.diagnose import diagnose
+from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
+from symrot.errors import InputError
+from symrot.exact.decision import Decision
+from symrot.exact.printing import as_text
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["in_context"]
+
+MOST_ASSIGNMENTS = 24
+"""The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+
+MOST_DIAGNOSED = 4
+"""The most ways of assigning letters for which the fault of a claim is sought."""
+
+MOST_COSTLY = 2.0
+"""The cost of a repair that is a derived formula as a whole."""
+
+ANGLES = tuple(Symbol(symbol.name, real=True) for symbol in (*symbols.angles, *symbols.angle_rates))
+SIDES = "a|b|c"
+"""The sides of a box, or the semi-axes of an ellipsoid, along x, y and z if nothing else is stated."""
+
+ANGLE = "phi|theta|psi|alpha|beta|gamma|varphi|vartheta|theta_?[1-3]|q_?[1-3]"
+USUAL: tuple[tuple[str, str], ...] = (
+    ("m", r"m|M|mu|m_\w"), ("R", r"[rRa]|[rR]_?0"), ("L", r"[lLh]|ell"), ("h", r"[hHl]"), ("r", r"[rdlhR]|r_?[A-Z]"),
+    ("R_1", r"R_?1|r_?1|R_?i|r_?i|a"), ("R_2", r"R_?2|r_?2|R_?o|r_?o|b"), (SIDES, SIDES),
+    ("A", r"[IAJ]|[IJ]_?[01xt]|I_?xx|[IJ]_prime|lambda_?1"), ("B", r"B|[IJ]_?[2y]|I_?yy|lambda_?2"),
+    ("C", r"[ICJ]|[IJ]_?[3zsG]|I_?zz|lambda_?3|[IJ]_?(O|cm)"),
+    ("phi|theta|psi", ANGLE), ("dphi|dtheta|dpsi", f"d({ANGLE})"),
+    *((f"omega_{axis}", rf"(omega|w|Omega)_?{pattern}|{letter}") for axis, pattern, letter in (
+        ("1", "[1x]", "p"), ("2", "[2y]", "q"), ("3", "[3z]", "omega|w|r"), ("x", "[1x]", "p"), ("y", "[2y]", "q"),
+        ("z", "[3z]", "omega|w|r"))),
+    ("g", "g"), ("c_3", r"[lRhda]|[lrh]_?(G|cm)"), ("Omega|n", r"Omega|omega_?p|n|Omega_\w+"),
+    ("H", r"[HLMh]|[HL]_?[GO]"), ("M|tau_[123]", r"[MNT]|tau|Gamma"), ("W", "W|mg"),
+    ("L_1", "[LHM]_?[1x]"), ("L_2", "[LHM]_?[2y]"), ("L_3", "[LHM]_?[3z]"),
+    ("p_phi", "p_?phi"), ("p_theta", "p_?theta"), ("p_psi", "p_?psi"),
+    ("k_O", r"k|k_?[0O]|i"), ("v", "v|v_?[GO]|v_?cm"),
+    ("omega_i", "omega_?[10i]"), ("omega_f", "omega_?[2f]|omega"), ("theta_i", "theta_?[10i]"),
+    ("theta_f", "theta_?[2f]|theta"), ("alpha_a", "alpha"), ("t", "t|Delta_t"), ("beta", "theta|beta|alpha"),
+    ("k_t", "k|kappa|c|k_t"), ("gamma", "gamma"), ("I_xx", "I_?(xx|x|11|1)"), ("I_yy", "I_?(yy|y|22|2)"),
+    ("I_zz", "I_?(zz|z|33|3)"), ("I_xy", "I_?(xy|12)"), ("I_xz", "I_?(xz|13|zx)"), ("I_yz", "I_?(yz|23)"),
+    ("q([0-3])", r"q_?[0-3]"), ("rho", "rho"), ("e", "e"),
+)  # fmt: skip
+"""Symbol of derived formulas -> the letters that are certainly meant as that symbol, where a claim has it."""
+
+
+@dataclass(frozen=True)
+class Meant:
+    """A derived formula in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
+
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end.
+    """
+
+    known: Known
+    value: Any
+    mapping: dict[str, str]
+    open_place: bool = False
+
+    @property
+    def identification(self) -> Identification:
+        """The derived formula as an entry of ``recognised_as`` in a verdict."""
+        return Identification(self.known.name, "", self.mapping, self.known.source)
+
+
+def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim that names a quantity, in the context of the claim.
+
+    ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If symrot
+    does not use some words of the context, the claim is called neither true nor false, and a note lists these words.
+    """
+    without, verdict = verdict, _by_context(claim, named, verdict)
+    if verdict.verdict == "true":
+        verdict = _with_order(claim.context, verdict, [*letters_of(named.formula)])
+        verdict = _with_axes(claim.context, _with_sides(verdict))
+    names = " ".join(known.name for known in verdict.recognised_as)
+    own = {*plain_words(names).split(), *plain_words(text(named.formula)).split(), *ENGLISH}
+    letters = {letter.lower() for letter in letters_of(named.formula)}
+    unused = [word for rest in claim.context.rest for word in rest.split() if word not in own | letters]
+    if not unused:
+        return verdict
+    note = f"of the context, these words are not used: {' '.join(unused)}"
+    if verdict.verdict == "true":
+        return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
+    return replace(without if verdict.verdict == "false" else verdict, notes=(*verdict.notes, note))
+
+
+def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
+    """Return the verdict, changed from "true" to "recognised" if phi and psi have the less usual order in a sequence.
+
+    In ZYX psi is the first angle, and phi the third (yaw, pitch, roll); in every other sequence phi is the first.
+    """
+    angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
+    if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
+        return verdict
+    usual = context.sequence == "ZYX"
+    reverse = same_rotation(context.sequence)
+    readings = [
+        known
+        for known in verdict.recognised_as
+        if _is_exchanged(known) == (usual != bool(reverse and reverse in known.name))
+    ]
+    if readings:
+        return replace(verdict, recognised_as=tuple(readings))
+    first, third = ("phi", "psi") if usual else ("psi", "phi")
+    note = f"guessed, not stated: {first} is the first angle of {context.sequence}, and {third} the third"
+    return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
+
+
+def _with_sides(verdict: Verdict) -> Verdict:
+    """Return the verdict, changed from "true" to "recognised" if a, b and c are not the sides along x, y and z."""
+    readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
+    if readings:
+        return replace(verdict, recognised_as=tuple(readings))
+    note = "guessed, not stated: which letter is the side along which axis"
+    return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
+
+
+def _with_axes(context: Context, verdict: Verdict) -> Verdict:
+    """Return the verdict, changed from "true" to "recognised" if a letter such as I_1 stands for another axis.
+
+    The words about a letter, or about the moments of the body, may say for which axis it stands.
+    """
+    stated = set(context.body.letters.values()) if context.body else set()
+    readings = [
+        known
+        for known in verdict.recognised_as
+        if is_consistent([(old, new) for old, new in known.mapping.items()
+                          if new not in stated and context.meaning_of(plain(new)) is None], fixed=True)
+    ]  # fmt: skip
+    if readings:
+        return replace(verdict, recognised_as=tuple(sorted(readings, key=lambda k: context.sequence not in k.name)))
+    note = "guessed, not stated: which letter belongs to which axis"
+    return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
+
+
+def _is_exchanged(known: Identification) -> bool:
+    """Return whether phi and psi are exchanged in the reading of a formula."""
+    return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
+
+
+ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
+
+
+def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim in its context, as if all of its words were used."""
+    context, quantity = claim.context, _name(named)
+    stated = _stated_by_name(named)
+    if verdict.verdict in ("recognised", "doubtful"):
+        complete = tuple(k for k in verdict.recognised_as if not k.how and not guesses(context, k.name, stated))
+        if complete and verdict.verdict == "recognised":
+            return _true(claim, named, replace(verdict, recognised_as=complete))
+        if complete and (decision := _against_repair(claim, named, verdict)) is not None:
+            return _false(replace(verdict, recognised_as=complete), decision)
+    if verdict.verdict == "recognised":
+        decided = _by_meant_formulas(claim, named, verdict, quantity, stated)
+        is_true = decided is not None and decided.verdict == "true"
+        return decided if decided is not None and is_true else _with_guesses(context, verdict, stated)
+    decided = _by_meant_formulas(claim, named, verdict, quantity, stated)
+    verdict = verdict if decided is None or (verdict.repairs and not decided.counterexample) else decided
+    if verdict.verdict in ("true", "recognised"):
+        return verdict
+    if other := _without_context(claim, named):
+        known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
+        reasons = list(misfits(context, known.name, quantity)) or ["with other letters"]
+        sentence = f"this is the formula {' and '.join(reasons)}: the {known.name}"
+        word = "doubtful" if verdict.verdict == "definition" else verdict.verdict
+        return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")
+    return verdict
+
+
+def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
+    """Return the derived formulas that match a claim in the other frame or, if there are none, without its context."""
+    context = claim.context
+    if context.frame:
+        flipped = replace(context, frame="space" if context.frame == "body" else "body")
+        in_other_frame = verdict_on_name(replace(claim, context=flipped), named, repair=False).recognised_as
+        if in_other_frame:
+            return in_other_frame
+    return verdict_on_name(claim.without_context, named, repair=False).recognised_as
+
+
+def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
+    """Return the verdict with a note on the words in the likeliest formula's name that nothing states."""
+    likeliest = verdict.recognised_as[0]
+    what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
+    return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
+
+
+def _name(named: NamedFormula) -> str:
+    """Return the name of the quantity; the name of its rate has a ``d`` in front."""
+    return f"d{named.name}" if named.is_rate else named.name
+
+
+def _stated_by_name(named: NamedFormula) -> str:
+    """Return the words in names of formulas that the name of a quantity implies: "first component" for an index 1."""
+    words = list(words_of(named) or ())
+    if re.fullmatch(r"[RACQ](_?\w+)?", named.name):
+        words.append("rotation matrix")
+    index = _name(named)[-1]
+    is_angle_rate = re.fullmatch(f"d({ANGLE})", _name(named)) is not None
+    words += [word for word, letters in COMPONENTS.items() if index in letters or is_angle_rate]
+    return " ".join(words)
+
+
+def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return the verdict "true" with the conditions under which the formula has a value."""
+    conditions = _decided(claim, named.formula, named.formula).conditions
+    return replace(verdict, verdict="true", conditions=tuple(map(as_text, conditions)))
+
+
+def _false(verdict: Verdict, decision: Decision) -> Verdict:
+    """Return the verdict "false" with the point where a claim differs from the formula that is meant."""
+    return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
+
+
+def _decided(claim: Claim, left: Node, right: Node) -> Decision:
+    """Return the decision on the equation of two trees in the letters of a claim."""
+    return decide_equation(claim.with_relation(("==", left, right), alternatives=()).equation)
+
+
+def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
+    """Return the decision "false" if the formula of a claim differs from its repair, otherwise None."""
+    try:
+        _, _, repaired = read_relation(verdict.repairs[0].text)
+        decision = _decided(claim, named.formula, repaired)
+    except (InputError, TooLarge):
+        return None
+    return decision if decision.verdict == "false" else None
+
+
+def _by_meant_formulas(
+    claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
+) -> Verdict | None:
+    """Return the verdict that the derived formulas meant by the context imply; None if they do not decide the claim."""
+    try:
+        formula = named.formula if named.solve is None else named.solve(named.formula)
+        value = claim.with_definitions(claim.interpreter().read(formula))
+    except InputError:
+        return None
+    meant = list(_meant(claim.context, value, quantity, stated))
+    decisions = [(candidate, _equal(candidate.value, value)) for candidate in meant]
+    if not meant or any(decision is None or _is_open(decision) for _, decision in decisions):
+        return None
+    equal = [candidate for candidate, decision in decisions if decision and decision.verdict == "true"]
+    if not equal and any(_is_transposed(candidate.value, value) for candidate in meant):
+        return None  # a matrix from space to body
+    names = {candidate.known.name for candidate in meant}
+    same = {candidate.known.name for candidate in equal}
+    is_open = any(candidate.open_place for candidate in meant)
+    if equal:
+        readings = tuple(candidate.identification for candidate in equal)
+        if same == names or not equal[0].open_place:
+            return _true(claim, named, Verdict("recognised", recognised_as=readings))
+        return _with_guesses(claim.context, Verdict("recognised", recognised_as=readings), stated)
+    if is_open:
+        return _near(claim, named, [(candidate, d) for candidate, d in decisions if d is not None])
+    return _different(claim, named, verdict, [(candidate, d) for candidate, d in decisions if d is not None])
+
+
+def _is_transposed(target: Any, value: Any) -> bool:
+    """Return whether the matrix ``value`` is square and provably the transpose of ``target``."""
+    if not is_matrix(value) or value.rows != value.cols:
+        return False
+    decision = _equal(target.T, value)
+    return decision is not None and decision.verdict == "true"
+
+
+def _is_open(decision: Decision) -> bool:
+    """Return whether a decision is neither "true" nor "false": undecided, or true for some signs of symbols only.
+
+    Formulas that are equal for special values only, such as equal moments of inertia, are different formulas.
+    """
+    if decision.verdict == "conditional":
+        return any(requirement.signs or not requirement.zeros for requirement in decision.requires)
+    return decision.verdict not in ("true", "false")
+
+
+def _different(
+    claim: Claim, named: NamedFormula, verdict: Verdict, decisions: Sequence[tuple[Meant, Decision]]
+) -> Verdict:
+    """Return the verdict "false" on a formula that differs from all the derived formulas that are meant."""
+    (candidate, decision), *_ = decisions
+    diagnosis, repairs = verdict.diagnosis, verdict.repairs
+    is_solved = named.solve is None or named.solve(named.formula) == named.formula
+    if not repairs and is_solved:
+        for candidate, decision in decisions[:MOST_DIAGNOSED]:
+            diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
+            if repairs:
+                break
+        else:
+            (candidate, decision), *_ = decisions
+            diagnosis = Diagnosis("derived", f"it is not the {candidate.known.name}")
+            if len({as_text(other.value) for other, _ in decisions}) == 1:
+                repairs = (Repair(f"{text(named.side)} == {as_text(candidate.value)}", "derived", MOST_COSTLY),)
+    return Verdict(
+        "false", counterexample=decision.counterexample, diagnosis=diagnosis, repairs=repairs,
+        recognised_as=(candidate.identification,),
+    )  # fmt: skip
+
+
+def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
+    """Return the verdict "doubtful" on a formula with one fault, for an axis whose place nothing states; or None."""
+    for candidate, decision in decisions[:MOST_DIAGNOSED]:
+        diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
+        if repairs and repairs[0].cost < MOST_COSTLY and diagnosis.code != "two_faults":
+            readings = (candidate.identification,)
+            return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings)
+    return None
+
+
+def _diagnosed(
+    claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
+) -> tuple[Diagnosis, tuple[Repair, ...]]:
+    """Return the fault by which a claim's formula differs from a derived one, and repairs of the claim's formula."""
+    none = Diagnosis("none", "")
+    try:
+        target = read_expression(as_text(candidate.value))
+        against = replace(claim, editable=("left",)).with_relation(("==", named.formula, target), alternatives=())
+        diagnosis, repairs = diagnose(against, replace(decision, requires=(), verdict="false"))
+    except (InputError, TooLarge):
+        return none, ()
+    end = f" == {text(target)}"
+    own = tuple(
+        replace(repair, text=f"{text(named.side)} == {repair.text.removesuffix(end)}")
+        for repair in repairs
+        if repair.text.endswith(end)
+    )
+    return (diagnosis if own else none), own
+
+
+def _equal(target: Any, value: Any) -> Decision | None:
+    """Return the decision on ``value == target``; None if the equation cannot be decided."""
+    try:
+        return decide_equation(Equation(value, target))
+    except (InputError, TooLarge):
+        return None
+
+
+def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
+    """Yield the derived formulas that a context means, in the letters of a value, in all ways of assigning letters."""
+    shape = value.shape if is_matrix(value) else None
+    own = atoms_of(list(value) if shape else [value]) - {time}
+    for known in _all_known():
+        if known.is_step or known.is_relation or ", squared" in known.name or not admits_name(
+            context, known.name, quantity
+        ):  # fmt: skip
+            continue
+        open_words = guesses(context, known.name, stated)
+        if not any(word in known.name for word in stated.split()) or not all(map(is_place, open_words)):
+            continue
+        target = known_value(known.text)
+        if getattr(target, "shape", None) != shape or not is_component(known.name, quantity):
+            continue
+        target = _with_letters(context, target)
+        is_specific = bool(bodies_of_formula(known.name)) or bool(context.sequence and context.sequence in known.name)
+        for mapping in islice(_assignments(context, target, own, quantity, known, is_specific), MOST_ASSIGNMENTS):
+            renamed = target.xreplace({**_unused_rates(mapping, own), **mapping})
+            used = target.free_symbols
+            names = {old.name: as_text(new) for old, new in mapping.items() if old in used}
+            names = {old: new for old, new in names.items() if plain(new) != old}
+            yield Meant(known, renamed, names, bool(open_words))
+
+
+def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
+    """Return the angle rates that a claim lacks, each with its derivative; empty if the claim has no derivative."""
+    if not any(atom.is_Derivative for atom in own):
+        return {}
+    functions = {symbol: Function(symbol.name[1:], real=True)(time) for symbol in ANGLES if symbol.name.startswith("d")}
+    return {symbol: value.diff(time) for symbol, value in functions.items() if symbol not in mapping}
+
+
+def _all_known() -> Iterator[Known]:
+    for formulas in by_fingerprint().values():
+        yield from formulas
+
+
+def _with_letters(context: Context, target: Any) -> Any:
+    """Return a derived formula with the letters that the words about the body give its dimensions and moments."""
+    if context.body is None:
+        return target
+    letters = dict(context.body.letters)
+    if context.body.kind.title == "cube" and not letters:
+        letters = {"b": "a", "c": "a"}
+    own = {symbol.name: symbol for symbol in target.free_symbols}
+    return target.xreplace({own[name]: Symbol(letter, real=True) for name, letter in letters.items() if name in own})
+
+
+def _assignments(
+    context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
+) -> Iterator[dict[Expr, Expr]]:
+    """Yield mappings from symbols of a derived formula to the atoms of a claim, by the letters that books use.
+
+    If the formula ``is_specific`` (for one body or one sequence), the claim may lack some of its symbols.
+    """
+    own_symbols = sorted(target.free_symbols - {time}, key=str)
+    if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
+        own_symbols = sorted({*own_symbols, *ANGLES}, key=str)
+    pinned = set(context.body.letters.values()) if context.body else set()
+    names = {symbol.name for symbol in own_symbols}
+    atoms = [atom for atom in sorted(own, key=str) if plain(as_text(atom)) not in pinned - names]
+    if len(atoms) > len(own_symbols) or (len(atoms) < len(own_symbols) and not is_specific):
+        return
+    choices = []
+    for atom in atoms:
+        name = plain(as_text(atom))
+        fitting = [symbol for symbol in own_symbols if _may_be(context, name, symbol.name, pinned)]
+        exact = [symbol for symbol in fitting if symbol.name == name]
+        is_open = name in ("phi", "psi", "dphi", "dpsi") and not has_order(context.sequence)
+        is_open = is_open or (re.fullmatch(SIDES, name) is not None and not pinned)
+        choices.append(
+            [*exact, *(symbol for symbol in fitting if symbol not in exact)] if is_open else exact or fitting
+        )
+    for chosen in _distinct(choices):
+        pairs = [(symbol.name, as_text(atom)) for symbol, atom in zip(chosen, atoms, strict=True)]
+        free = [pair for pair in pairs if pair[0] not in pinned]
+        if not is_consistent([*free, *component(known.name, quantity)], known.is_placed):
+            continue
+        letters = [as_text(atom) for atom in atoms]
+        unpinned = {old: new for old, new in free if old != new}
+        if admits_letters(replace(context, body=None), unpinned, letters):
+            yield dict(zip(chosen, atoms, strict=True))
+
+
+def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
+    """Return whether a letter of a claim can be a symbol of a derived formula."""
+    if symbol in pinned or name in pinned:
+        return name == symbol
+    meaning = context.meaning_of(name)
+    if meaning is not None and meaning.quantity.symbols:
+        return re.fullmatch(meaning.quantity.symbols, symbol) is not None
+    return name == symbol or any(
+        re.fullmatch(pattern, symbol) and re.fullmatch(letters, name) for pattern, letters in USUAL
+    )
+
+
+def _distinct(choices: Sequence[Sequence[Expr]]) -> Iterator[tuple[Expr, ...]]:
+    """Yield tuples of one member of each choice, with no member twice."""
+    if not choices:
+        yield ()
+        return
+    for first in choices[0]:
+        rest = [[symbol for symbol in choice if symbol != first] for choice in choices[1:]]
+        for others in _distinct(rest):
+            yield (first, *others)

@@ -1,0 +1,236 @@
+"""The quantities that words such as "moment of inertia about the centre" name, with their synonyms.
+
+Words in the names of derived formulas, and patterns of symbols, tell which formulas and symbols are for a quantity.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+__all__ = ["AMBIGUOUS", "PLACES", "QUANTITIES", "Quantity", "place_of_words", "plain_words", "unused_words"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of mechanics.
+
+    Attributes
+    ----------
+    title : str
+        Its usual name.
+    synonyms : tuple of str
+        Other phrases for it.
+    formulas : tuple of str
+        Phrases; the name of each derived formula for the quantity contains one of them.
+    symbols : str
+        A pattern of the symbols that derived formulas use for it; empty if they use none.
+    unit : str
+    with_plus : bool
+        Whether it is a product of inertia that is defined without the minus sign.
+    """
+
+    title: str
+    synonyms: tuple[str, ...]
+    formulas: tuple[str, ...]
+    symbols: str
+    unit: str
+    with_plus: bool = False
+
+    @cached_property
+    def phrases(self) -> tuple[str, ...]:
+        """The title and the synonyms as plain words."""
+        return tuple(map(plain_words, (self.title, *self.synonyms)))
+
+
+MOMENT, MOMENTUM, RATE, ENERGY, TORQUE = "kg m^2", "kg m^2/s", "rad/s", "J", "N m"
+INERTIA = ("moment of inertia", "inertia tensor", "parallel-axis")
+MOMENTS, OMEGAS = "A|B|C|I_xx|I_yy|I_zz", "omega_[123xyzif]"
+
+QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("moment of inertia", ("inertia",), INERTIA, MOMENTS, MOMENT),
+    Quantity("axial moment of inertia",
+             ("axial moment", "moment about the axis", "moment of inertia about the axis", "inertia about the axis",
+              "moment about the symmetry axis", "moment of inertia about the symmetry axis"), INERTIA, "C", MOMENT),
+    Quantity("transverse moment of inertia",
+             ("transverse moment", "transverse inertia", "moment about a transverse axis", "equatorial moment",
+              "moment of inertia about a transverse axis"), INERTIA, "A|B", MOMENT),
+    Quantity("principal moment of inertia", ("principal moment",), INERTIA, MOMENTS, MOMENT),
+    Quantity("product of inertia", (), ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT),
+    Quantity("product of inertia without the minus sign",
+             ("product of inertia with a plus sign", "integral of x y dm", "integral of x z dm", "integral of y z dm"),
+             ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, with_plus=True),
+    Quantity("inertia tensor", ("inertia matrix", "tensor of inertia", "matrix of inertia"),
+             ("inertia tensor", "parallel-axis"), MOMENTS, MOMENT),
+    Quantity("radius of gyration", (), ("radius of gyration",), "k_O|k_G|i|k", "m"),
+    Quantity("kinetic energy", ("kinetic energy of rotation", "rotational energy", "energy of rotation"),
+             ("kinetic energy",), "E_k", ENERGY),
+    Quantity("potential energy", ("potential",), ("potential",), "E_k", ENERGY),
+    Quantity("energy", ("total energy", "mechanical energy"), ("energy of", "energy at"), "E_k|E", ENERGY),
+    Quantity("effective potential", (), ("effective potential",), "", ENERGY),
+    Quantity("Lagrangian", (), ("Lagrangian",), "", ENERGY),
+    Quantity("work", (), ("work",), "W_k", ENERGY),
+    Quantity("power", (), ("power",), "", "W"),
+    Quantity("angular momentum", ("moment of momentum",), ("angular momentum",), "H|L_[123]|h_[123]", MOMENTUM),
+    Quantity("momentum of precession", ("momentum of phi", "momentum of the precession angle"),
+             ("momentum of precession",), "p_phi", MOMENTUM),
+    Quantity("momentum of nutation", ("momentum of theta", "momentum of the nutation angle"),
+             ("momentum of nutation",), "p_theta", MOMENTUM),
+    Quantity("momentum of spin", ("momentum of psi", "momentum of the spin angle"),
+             ("momentum of spin",), "p_psi", MOMENTUM),
+    Quantity("torque", ("couple", "moment of force", "rolling moment", "pitching moment", "yawing moment",
+                        "torque of gravity"),
+             ("torque",), "M|tau_[123]", TORQUE),
+    Quantity("angular velocity", ("body rate", "angular rate", "angular speed", "rotation rate"),
+             ("angular velocity", "length of the angular velocity"), f"{OMEGAS}|Omega|omega_p|n", RATE),
+    Quantity("precession rate", ("rate of precession", "precession", "angular velocity of precession"),
+             ("precession",), "dphi|Omega|n", RATE),
+    Quantity("slow precession rate", ("rate of slow precession", "slow precession"), ("slow precession",),
+             "dphi|Omega|n", RATE),
+    Quantity("steady precession rate", ("rate of steady precession", "steady precession"), ("steady precession",),
+             "dphi|Omega|n", RATE),
+    Quantity("spin", ("spin rate", "rate of spin", "angular velocity of spin"),
+             ("spin", "along the axis"), "dpsi|omega_3", RATE),
+    Quantity("angular velocity along the axis", ("component of the angular velocity along the axis",),
+             ("along the axis", "angular velocity"), "omega_3", RATE),
+    Quantity("nutation rate", ("rate of nutation",), ("nutation",), "dtheta", RATE),
+    Quantity("frequency", ("angular frequency", "frequency of nutation", "frequency of small oscillations"),
+             ("frequency",), "n|Omega", RATE),
+    Quantity("angle rate", ("rate of the angles", "rate of an angle", "rate of the euler angles", "euler angle rate"),
+             ("angle rates",), "dphi|dtheta|dpsi", RATE),
+    Quantity("angular acceleration", ("constant angular acceleration",),
+             ("angular acceleration", "Euler's equations"), "alpha_a|domega_[123]|ddtheta|ddomega_1", "rad/s^2"),
+    Quantity("precession angle", ("angle of precession",), ("angle of", "yaw"), "phi", "rad"),
+    Quantity("angle of the axis", ("nutation angle", "angle of nutation", "angle of the axis from the vertical",
+                                   "angle of the axis from the upward vertical", "nutation",
+                                   "angle between the axis and the angular momentum", "angle between axis and H",
+                                   "angle between the angular momentum and the axis",
+                                   "angle between the axis and the vertical",
+                                   "angle between the rod and the axis"), ("angle of",), "theta", "rad"),
+    Quantity("spin angle", ("angle of spin",), ("angle of", "roll"), "psi", "rad"),
+    Quantity("angle between the axis and the angular velocity",
+             ("angle between the angular velocity and the axis", "angle between axis and omega"),
+             ("angle of",), "gamma", "rad"),
+    Quantity("angle of the slope", ("angle of the incline", "slope", "angle of the incline from the horizontal"),
+             (), "beta", "rad"),
+    Quantity("angle of rotation", ("angle of the rotation", "rotation angle"), ("angle of", "angle at"),
+             "alpha|theta_i|theta_f", "rad"),
+    Quantity("yaw", ("heading", "yaw angle"), ("yaw",), "phi", "rad"),
+    Quantity("pitch", ("pitch angle",), ("pitch",), "theta", "rad"),
+    Quantity("roll", ("bank", "roll angle"), ("roll",), "psi", "rad"),
+    Quantity("mass", (), (), "m|m_[12]", "kg"),
+    Quantity("weight", (), (), "W", "N"),
+    Quantity("gravity", ("gravitational acceleration", "acceleration of gravity"), (), "g", "m/s^2"),
+    Quantity("radius", (), (), "R|r|R_1|R_2", "m"),
+    Quantity("length", (), (), "L", "m"),
+    Quantity("height", (), (), "h|L", "m"),
+    Quantity("distance of the centre of mass",
+             ("distance of the centre of mass from the pivot", "distance of the centre of mass from the fixed point"),
+             (), "c_3|r|L", "m"),
+    Quantity("distance of the axes", ("distance between the axes", "distance of two axes"), (), "r|d_[xyz]", "m"),
+    Quantity("distance of the centre of percussion",
+             ("centre of percussion", "distance of the centre of percussion from the pivot"),
+             ("distance of",), "q_d", "m"),
+    Quantity("speed", ("velocity",), ("speed", "velocity of"), "v", "m/s"),
+    Quantity("acceleration", (), ("acceleration of",), "a_l", "m/s^2"),
+    Quantity("period", ("period of oscillation", "period of small oscillations"), ("period",), "T_p", "s"),
+    Quantity("time", (), (), "t", "s"),
+    Quantity("stiffness", ("torsional stiffness", "spring constant"), (), "k_t|k_s", "N m/rad"),
+    Quantity("Rodrigues parameter", ("classical rodrigues parameter", "gibbs vector"),
+             ("Rodrigues parameters",), "g[123]|sigma", "1"),
+    Quantity("modified Rodrigues parameter", ("length of the modified rodrigues parameter",),
+             ("modified Rodrigues parameters",), "s[123]|sigma", "1"),
+    Quantity("quaternion",
+             ("euler parameter", "unit quaternion", "scalar euler parameter", "scalar part of a quaternion"),
+             ("quaternion",), "q[0123]|p[0123]", "1"),
+    Quantity("rate matrix", ("matrix of the angle rates", "rate jacobian", "jacobian of the rates"),
+             ("rate Jacobian", "rate matrix"), "", ""),
+    Quantity("rotation matrix", ("attitude matrix", "direction cosine matrix", "matrix of a rotation"),
+             ("rotation matrix", "rotation about"), "R_[123][123]", "1"),
+    Quantity("unit vector along the axis", ("axis of rotation", "unit axis", "rotation axis"),
+             ("axis of",), "n[123]", "1"),
+)  # fmt: skip
+"""Every quantity that words can name; the longest phrase in a text decides which one it is."""
+
+AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
+"""Words that name more than one quantity -> what to write instead."""
+
+PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
+    ("about the centre of mass", ("centre", "centre of mass", "centroid", "diameter", "central axis"),
+     ("about its centre of mass", "about their centre of mass")),
+    ("about an end", ("end", "one end", "centre of an end", "centre of one end"),
+     ("about an end", "about the centre of an end")),
+    ("about the tip", ("tip", "apex", "vertex"), ("about its tip",)),
+    ("about the base", ("base", "centre of the base", "centre of the flat face", "bottom", "centre of the bottom"),
+     ("about the centre of the base", "about the centre of the flat face", "about the centre of the bottom")),
+    ("about a corner", ("corner", "first corner", "right corner"),
+     ("about a corner", "about the first corner", "about the corner at (0, 0)")),
+    ("about a point of the rim", ("rim", "point of its rim", "point of the rim"), ("about a point of its rim",)),
+    ("about a point of the surface", ("tangent", "point of its surface", "point of the surface"),
+     ("about a point of its surface",)),
+    ("about the middle of a side", ("middle of a side",), ("about the middle of a side",)),
+    ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
+    ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
+)  # fmt: skip
+"""A place of an axis: its title, the words for it after "about", and the words for it in names of formulas."""
+
+UNUSED = frozenset({
+    "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
+    "constant", "unit", "axes", "axis", "component", "with",
+})  # fmt: skip
+"""Words that say nothing that the check could use or miss."""
+
+_SPELLINGS = (
+    (r"∫|\\int|\bint\b", " integral of "), (r"\bcenter", "centre"), (r"\bdisc\b", "disk"), (r"φ|\\varphi|\\phi", "phi"),
+    (r"θ|ϑ|\\vartheta|\\theta", "theta"), (r"ψ|\\psi", "psi"), (r"ω|\\boldsymbol\\omega|\\omega", "omega"),
+    (r"\bx\s*y\s*(\\,)?\s*dm\b", "x y dm"), (r"\bx\s*z\s*(\\,)?\s*dm\b", "x z dm"),
+    (r"\by\s*z\s*(\\,)?\s*dm\b", "y z dm"), (r"\bmoments\b", "moment"), (r"\bproducts\b", "product"),
+    (r"\b(rate|quaternion|parameter|torque|rotation|couple|angle)s\b", r"\1"), (r"\baxes\b", "axis"),
+    (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
+    (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
+)  # fmt: skip
+
+
+def plain_words(text: str) -> str:
+    """Return words in lower case with one spelling each, without articles, and with single blanks.
+
+    Examples
+    --------
+    >>> plain_words("Moments of  inertia around its center")
+    'moment of inertia about centre'
+    """
+    words = text.lower()
+    for pattern, spelling in _SPELLINGS:
+        words = re.sub(pattern, spelling, words)
+    words = re.sub(r"integral of\s+(integral of\s+)+", "integral of ", words)
+    return " ".join(words.split())
+
+
+def place_of_words(words: str) -> tuple[str, str]:
+    """Return the title of the place of an axis in plain words, or an empty text, and the words without it.
+
+    Examples
+    --------
+    >>> place_of_words("of a rod about one end")
+    ('about an end', 'of a rod')
+    """
+    places = [
+        (match, title)
+        for title, phrases, _ in PLACES
+        for phrase in phrases
+        if (match := re.search(rf"(through|about|hung at|hung from|at) {plain_words(phrase)}(?![\w-])(?! of )", words))
+    ]
+    if not places:
+        return "", words
+    match, title = max(places, key=lambda pair: len(pair[0][0]))
+    return title, " ".join(words.replace(match[0], " ", 1).split())
+
+
+def unused_words(words: str) -> str:
+    """Return the words of a text that carry meaning, without articles and the like; often the result is empty.
+
+    Examples
+    --------
+    >>> unused_words("of the body, with a torque")
+    'body torque'
+    """
+    return " ".join(word for word in re.findall(r"[^\s,;]+", words) if word not in UNUSED)

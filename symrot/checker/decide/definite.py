@@ -1,0 +1,29 @@
+"""Formulas that are never negative, as their form shows: sums of squares, absolute values, even powers."""
+
+import sympy
+from sympy import Abs, Add, Expr, Mul, Pow
+
+__all__ = ["surely_nonnegative"]
+
+MOST_TERMS_OF_SQUARE = 40
+"""The most terms of a sum that is factored to see if it is a square."""
+
+
+def surely_nonnegative(value: Expr) -> bool:
+    """Return whether the form of a real formula, such as a sum of squares, shows that it is never negative.
+
+    Its square roots are taken to be real.
+    """
+    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
+        return True
+    if isinstance(value, Pow) and value.exp.is_Rational:
+        even = value.exp.q == 1 and value.exp.p % 2 == 0
+        return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
+    if isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args)):
+        return True
+    if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
+        return False
+    if any(value == 1 - node**2 for node in value.atoms(sympy.sin, sympy.cos)):
+        return True
+    factored = sympy.factor(value)
+    return not isinstance(factored, Add) and surely_nonnegative(factored)

@@ -1,0 +1,176 @@
+"""Equations with powers too large to be expanded, such as ``(a - x)**6000 == (x - a)**6000``.
+
+All powers of one base u become ``Z u^m`` with a letter Z for the smallest large power, which is not expanded. An
+equation that holds for all values of the letters holds for the powers too. A false equation is refuted at a point with
+small numbers.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice, product
+from typing import Any
+
+from mpmath import iv, mpf, nstr, workdps
+from sympy import Dummy, Expr, Mul, Pow, Rational, pi, preorder_traversal
+
+from symrot.exact.angles import cyclotomic
+from symrot.exact.angles.angles import base_coefficients, linear_form
+from symrot.exact.decide import is_zero
+from symrot.exact.domain.known_points import holds
+from symrot.exact.domain.needs import Need, leaves_of, needs_of
+from symrot.exact.evidence import Counterexample
+from symrot.exact.intervals import DIGITS, enclosure
+
+__all__ = ["LARGEST_DEGREE", "ShorterPowers", "degree_of", "point_of_difference", "shorter_powers"]
+
+LARGEST_DEGREE = 240
+"""The largest degree of a side in its symbols, sines and cosines; a formula of larger degree is not expanded."""
+
+LARGEST_EXPANDED = 64
+"""Powers with a larger exponent are replaced."""
+
+MOST_POINTS = 500
+MOST_BASES = 12
+VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (0, 1), (-1, 1), (2, 1), (-2, 1), (1, 2), (1, 3)))
+"""Values of symbols at which sides are compared."""
+
+LONGEST_WHOLE_NUMBER = 40
+"""The most digits of a whole number that is written exactly."""
+
+DIGITS_WRITTEN = (10, 20, 30, 40, 50)
+"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
+
+
+# -- the degree of formulas -------------------------------------------------------------------------------------------
+
+
+def degree_of(formulas: Sequence[Expr]) -> int:
+    """Return an upper bound on the degrees of formulas in symbols, sines and cosines of base angles, once expanded."""
+    plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
+    bases = {} if plain else _base_multiples(formulas)
+    known: dict[Expr, int] = {}
+    return max((_degree(formula, known, bases) for formula in formulas), default=0)
+
+
+def _size(formula: Expr) -> int:
+    return _degree(formula, {}, {})
+
+
+def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
+    """Return, for each atom of an angle or exponent, the greatest common divisor of its coefficients."""
+    arguments = {
+        node.args[0]
+        for formula in formulas
+        for node in preorder_traversal(formula)
+        if node.is_Function and len(node.args) == 1
+    }
+    return base_coefficients(linear_form(argument, turns=False) for argument in arguments)
+
+
+def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
+    """Return an upper bound on the sum of the degrees of numerator and denominator of a formula."""
+    if node not in known:
+        below = [_degree(part, known, bases) for part in node.args]
+        if isinstance(node, Mul):
+            known[node] = sum(below)
+        elif isinstance(node, Pow) and node.exp.is_Rational:
+            known[node] = below[0] * max(1, abs(int(node.exp.p)))
+        elif node.is_Function and len(node.args) == 1 and not node.args[0].is_Symbol:
+            known[node] = max(_multiple(node.args[0], bases), 1)
+        elif node.is_number:
+            known[node] = 0
+        else:
+            known[node] = max([*below, 1]) if not node.is_Add else max(below)
+    return known[node]
+
+
+def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
+    """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
+
+    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2. The coefficient of an atom
+    in ``bases`` is counted in multiples of the value there.
+    """
+    total = 0
+    for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
+        number, atom = term.as_coeff_Mul()
+        constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
+        if atom in bases and number.is_Rational:
+            total += abs(int(Fraction(int(number.p), int(number.q)) / bases[atom]))
+        else:
+            total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
+    return total
+
+
+# -- powers as letters ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class ShorterPowers:
+    """Formulas with letters for their large powers.
+
+    Attributes
+    ----------
+    formulas : tuple of Expr
+    bases : mapping
+        Letter -> the base of its power.
+    """
+
+    formulas: tuple[Expr, ...]
+    bases: Mapping[Expr, Expr]
+
+
+def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
+    """Return formulas with letters for large powers, or None if there are no such powers or too many bases."""
+    powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
+    large = {node for node in powers if abs(node.exp) > LARGEST_EXPANDED}
+    bases: dict[Expr, list[Expr]] = {}
+    for base in sorted({node.base for node in large}, key=str):
+        same = next((other for other in bases if _equal_up_to_sign(base, other)), base)
+        bases.setdefault(same, []).append(base)
+    if not large or len(bases) > MOST_BASES:
+        return None
+    values: dict[Expr, Expr] = {}
+    letters: dict[Expr, Expr] = {}
+    for base, members in bases.items():
+        own = [node for node in large if node.base in members]
+        least = min(abs(int(node.exp)) for node in own)
+        letter = Dummy("Z", real=True)
+        letters[letter] = base
+        for node in own:
+            direction = 1 if node.exp > 0 else -1
+            rest = abs(int(node.exp)) - least
+            sign = 1 if is_zero(node.base - base) else (-1) ** least
+            values[node] = sign * letter**direction * node.base ** (direction * rest)
+    return ShorterPowers(tuple(formula.xreplace(values) for formula in formulas), letters)
+
+
+def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
+    return first == second or is_zero(first - second) or is_zero(first + second)
+
+
+# -- points at which the sides differ ---------------------------------------------------------------------------------
+
+
+def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
+    """Return a point with small numbers at which both sides have values that differ and all needs hold, or None."""
+    leaves = leaves_of([left, right, *(need.formula for need in stated)])
+    needs = [*needs_of([left, right]), *stated]
+    for numbers in islice(product(VALUES, repeat=len(leaves)), MOST_POINTS):
+        point = dict(zip(leaves, numbers, strict=True))
+        sides = [enclosure(side, point) for side in (left, right)]
+        if None in sides or 0 in iv.mpf(0) + sides[0] - sides[1]:
+            continue
+        if all(holds(need, point) for need in needs):
+            texts = ([_written(side, digits) for side in sides] for digits in DIGITS_WRITTEN)
+            return Counterexample(tuple(point.items()), None, *next(pair for pair in texts if pair[0] != pair[1]))
+    return None
+
+
+def _written(value: Any, digits: int) -> str:
+    """Return an interval as a number: exactly if it is a short whole number, otherwise its first digits."""
+    middle = mpf(value.mid)
+    if value.a == value.b and middle == int(middle) and len(str(int(middle))) <= LONGEST_WHOLE_NUMBER:
+        return str(int(middle))
+    with workdps(DIGITS):
+        return f"{nstr(middle, digits)}.."

@@ -1,0 +1,489 @@
+"""Conditions on signs, written as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
+
+A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Each formula is factored;
+factors of known sign are left out, bounds of one quantity are joined, and conditions that hold everywhere or follow
+from the others are dropped. What is written holds exactly where the conditions hold and their formulas have values.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import sympy
+from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, cos, sin
+from sympy.core.relational import Relational
+from sympy.polys.polyerrors import PolynomialError
+
+from symrot.checker.decide.definite import surely_nonnegative
+from symrot.errors import InputError
+from symrot.exact.domain.everywhere import range_everywhere
+from symrot.exact.evidence import Requirement
+from symrot.exact.plain_arguments import with_plain_arguments
+from symrot.exact.printing import as_text
+from symrot.exact.ring.roots import is_positive_where_defined
+from symrot.exact.size import pieces
+
+__all__ = ["condition_texts", "follow", "range_text", "with_domain"]
+
+MOST_PIECES = 80
+"""A formula with more symbols and operations is written as it is."""
+
+Sign = tuple[Expr, str]
+"""(formula, sign): the condition that the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
+
+
+def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
+    """Return conditions as text, joined by ``and``; empty if they hold everywhere.
+
+    With ``divided=False`` the text leaves out that divisors are not zero.
+
+    Examples
+    --------
+    >>> from sympy import pi, symbols
+    >>> x = symbols("x", real=True)
+    >>> range_text([(x, ">= 0"), (pi - x, ">= 0")])
+    '0 <= x <= pi'
+    """
+    return " and ".join(_texts(_Conditions.of(signs, divided)))
+
+
+def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
+    """Return whether the conditions ``signs`` follow from the conditions ``known``."""
+    return set(_texts(_Conditions.of([*known, *signs]))) == set(_texts(_Conditions.of(known)))
+
+
+def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
+    """Return the conditions of a decision as texts: its requirements, then the other conditions of its formulas.
+
+    A condition that follows from the only requirement is left out.
+    """
+    conditions = list(conditions)
+    required = [each for each in conditions if isinstance(each, Requirement)]
+    assumed = required[0].conditions if len(required) == 1 else []
+    texts = _texts(_Conditions.of([*assumed, *_signs(conditions)]))
+    stated = required[0].text.split(" and ") if assumed else []
+    return (*(each.text for each in required), *(text for text in texts if text not in stated))
+
+
+def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
+    """Return a requirement whose text includes what the conditions say about its quantities.
+
+    ``x >= 0`` under the condition ``x != 0`` becomes ``x > 0``.
+    """
+    signs = _signs(conditions)
+    if not requirement.signs or not signs:
+        return requirement
+    alone = _texts(_Conditions.of(signs))
+    joined = [text for text in _texts(_Conditions.of([*requirement.conditions, *signs])) if text not in alone]
+    return replace(requirement, text=" and ".join(joined)) if joined else requirement
+
+
+def _signs(conditions: Iterable[Any]) -> list[Sign]:
+    return [(each.lhs, f"{each.rel_op} 0") for each in conditions if isinstance(each, Relational)]
+
+
+# -- one condition in factors -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Bound:
+    """A factor of a formula as ``slope * (quantity - root)``; the slope is 1 or -1."""
+
+    quantity: Expr
+    root: Expr
+    slope: int
+
+    @property
+    def formula(self) -> Expr:
+        return self.quantity - self.root
+
+
+def _bound(factor: Expr) -> _Bound:
+    """Return a factor as a quantity minus a number; ``2*x - pi`` is x minus pi/2."""
+    constant, rest = factor.as_independent(*_leaves(factor), as_Add=True)
+    content, quantity = rest.as_coeff_Mul()
+    if quantity.is_Add:
+        own, quantity = quantity.primitive()
+        content *= own
+    if quantity.could_extract_minus_sign():
+        content, quantity = -content, -quantity
+    return _Bound(quantity, -constant / content, 1 if content > 0 else -1)
+
+
+def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
+    """Return whether a product is proven not to be negative where a factor is zero."""
+    bound = _bound(factor)
+    return bool(bound.quantity.is_Symbol and surely_nonnegative(product.xreplace({bound.quantity: bound.root})))
+
+
+def _with_plain_functions(formula: Expr) -> Expr:
+    """Return a formula with arguments of functions in normal form: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
+    try:
+        return with_plain_arguments([formula])[0][0]
+    except InputError:
+        return formula
+
+
+def _leaves(formula: Expr) -> list[Expr]:
+    return [node for node in formula.atoms(sympy.Symbol, sympy.Function, sympy.Derivative) if not node.is_number]
+
+
+def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
+    """Return a formula as (sign, factor -> power), without positive numbers; None if it cannot be factored."""
+    above, below = sympy.fraction(sympy.together(formula))
+    sign, powers = 1, dict[Expr, int]()
+    for part, direction in ((above, 1), (below, -1)):
+        try:
+            constant, pairs = sympy.factor_list(part)
+        except PolynomialError:
+            return None
+        if constant.is_zero or not constant.is_real:
+            return None
+        sign *= 1 if constant > 0 else -1
+        for factor, power in pairs:
+            if factor.is_number:
+                if factor.is_positive is None:
+                    return None
+                sign *= 1 if factor.is_positive or power % 2 == 0 else -1
+                continue
+            for linear in _linear_factors(factor):
+                powers[linear] = powers.get(linear, 0) + direction * int(power)
+    return sign, powers
+
+
+def _linear_factors(factor: Expr) -> tuple[Expr, ...]:
+    """Return the factors ``x - sqrt(2)`` and ``x + sqrt(2)`` of ``x^2 - 2``; other formulas are not split."""
+    symbols = factor.free_symbols
+    if len(symbols) == 1 and factor.is_polynomial(*symbols):
+        poly = sympy.Poly(factor, *symbols)
+        if poly.degree() == 2 and poly.LC() == 1 and poly.discriminant() > 0:
+            return tuple(poly.gen - root for root in sympy.roots(poly))
+    return (factor,)
+
+
+def _always_positive(factor: Expr) -> bool:
+    """Return whether a factor is positive wherever it has a value."""
+    if factor.is_positive or is_positive_where_defined(factor) or range_everywhere(factor)[0] > 0:
+        return True
+    return _exceeds_absolute(factor) or _is_definite(factor)
+
+
+def _exceeds_absolute(factor: Expr) -> bool:
+    """Return whether a factor is ``sqrt(P) + a`` with ``P > a^2``, as ``sqrt(x^2 + 1) - x`` is."""
+    roots = [term for term in Add.make_args(factor) if term.is_Pow and term.exp == Rational(1, 2)]
+    if len(roots) != 1 or not factor.is_Add:
+        return False
+    rest = (roots[0].base - (factor - roots[0]) ** 2).expand()
+    return bool(rest.is_positive)
+
+
+def _is_definite(factor: Expr) -> bool:
+    """Return whether a factor is a quadratic polynomial of one symbol without real zeros and with a positive value."""
+    symbols = factor.free_symbols
+    if len(symbols) != 1 or not factor.is_polynomial(*symbols):
+        return False
+    poly = sympy.Poly(factor, *symbols)
+    return bool(poly.degree() == 2 and poly.discriminant() < 0 and poly.LC() > 0)
+
+
+# -- all conditions together ------------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Range:
+    """The lower and upper bound of a quantity, each a number or None, and whether the quantity may reach the bound."""
+
+    low: Expr | None = None
+    high: Expr | None = None
+    low_closed: bool = True
+    high_closed: bool = True
+
+    def narrow(self, root: Expr, closed: bool, above: bool) -> None:
+        """Add ``root`` as a lower bound if the quantity is ``above`` it, otherwise as an upper bound."""
+        name = "low" if above else "high"
+        known = getattr(self, name)
+        tighter = known is None or ((root - known) if above else (known - root)).is_positive
+        if tighter:
+            setattr(self, name, root)
+            setattr(self, f"{name}_closed", closed)
+        elif known == root:
+            setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
+
+    def sign_of(self, root: Expr) -> tuple[int, bool]:
+        """Return the sign of the quantity minus ``root`` (0 if unknown), and whether this difference may be zero."""
+        for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
+            distance = None if bound is None else sign * (bound - root)
+            if distance is not None and distance.is_nonnegative:
+                return sign, bool(distance.is_zero) and closed
+        return 0, True
+
+
+@dataclass
+class _Conditions:
+    """Conditions in their simplest form.
+
+    Attributes
+    ----------
+    ranges : mapping
+        Quantity -> its bounds.
+    products : mapping
+        Product of at least two factors -> its sign, ``"> 0"`` or ``">= 0"``.
+    nonzero : mapping
+        Formulas that must not be zero, in the order in which they came.
+    whole : list of (Expr, str)
+        Conditions that were not factored.
+    """
+
+    ranges: dict[Expr, _Range] = field(default_factory=dict)
+    products: list[tuple[Mapping[Expr, int], int, str]] = field(default_factory=list)
+    nonzero: dict[Expr, None] = field(default_factory=dict)
+    whole: list[Sign] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, signs: Sequence[Sign], divided: bool = True) -> "_Conditions":
+        """Return conditions in their simplest form."""
+        conditions = cls()
+        for formula, sign in signs:
+            conditions._add(_with_plain_functions(formula), sign, divided)
+        conditions._settle()
+        return conditions
+
+    def _add(self, formula: Expr, sign: str, divided: bool = True) -> None:
+        factored = _factors(formula) if pieces([formula]) <= MOST_PIECES else None
+        if factored is None:
+            self.whole.append((formula, sign))
+            return
+        direction, powers = factored
+        odd: dict[Expr, int] = {}
+        square: list[Expr] = []
+        for factor, power in powers.items():
+            if _always_positive(factor):
+                continue
+            if _always_positive(-factor):
+                direction *= -1 if power % 2 else 1
+                continue
+            signless = isinstance(factor, Abs) or power % 2 == 0
+            if sign != ">= 0" or (power < 0 and divided):
+                self._exclude(factor)
+            if sign != "!= 0" and not signless:
+                odd[factor] = 1
+            elif sign == ">= 0" and power > 0:
+                square.append(factor.args[0] if isinstance(factor, Abs) else factor)
+        if sign == "!= 0" or (not odd and direction > 0):
+            return
+        product = direction * Mul(*odd)
+        square = [factor for factor in square if factor not in odd and not _nonnegative_at_zero(product, factor)]
+        if not odd or square:  # f^2 g >= 0 also where f is zero and g is negative
+            if not surely_nonnegative(formula):
+                self.whole.append((formula, sign))
+            return
+        self.products.append((odd, direction, sign))
+
+    def _exclude(self, factor: Expr) -> None:
+        """Add the condition that a factor is not zero."""
+        if isinstance(factor, Abs):
+            self._add(factor.args[0], "!= 0")
+        else:
+            self.nonzero[_bound(factor).formula] = None
+
+    def _settle(self) -> None:
+        """Turn each product of which all factors but one have known signs into a bound, and repeat."""
+        changed = True
+        while changed:
+            changed = False
+            for entry in list(self.products):
+                simpler = self._simpler(entry)
+                if simpler != entry:
+                    self.products.remove(entry)
+                    changed = True
+                    if simpler is not None:
+                        self.products.append(simpler)
+        strict = [entry for entry in self.products if entry[2] == "> 0"]
+        for factors, direction, _ in strict:
+            same = (factors, direction, ">= 0")
+            self.products = [entry for entry in self.products if entry != same]
+        self.products = [entry for n, entry in enumerate(self.products) if entry not in self.products[:n]]
+        implied = [_bound(factor).formula for factors, _, sign in self.products if sign == "> 0" for factor in factors]
+        self.nonzero = {
+            formula: None for formula in self.nonzero if formula not in implied and not self._excludes(formula)
+        }
+
+    def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
+        """Return a product without factors of known sign, or None if it has become a bound or holds anyway."""
+        factors, direction, sign = entry
+        bounds = {factor: _bound(factor) for factor in factors}
+        if sign == ">= 0" and all(bound.formula in self.nonzero for bound in bounds.values()):
+            sign = "> 0"
+        if len(factors) == 1:
+            ((factor, bound),) = bounds.items()
+            above = direction * bound.slope > 0
+            self.ranges.setdefault(bound.quantity, self._new_range(bound.quantity)).narrow(
+                bound.root, sign == ">= 0", above
+            )
+            return None
+        if len({bound.quantity for bound in bounds.values()}) == 1 and self._between(bounds, direction, sign):
+            return None
+        open_factors, may_vanish = {}, False
+        for factor, bound in bounds.items():
+            known, zero = (
+                self.ranges[bound.quantity].sign_of(bound.root) if bound.quantity in self.ranges else (0, True)
+            )
+            zero = zero and bound.formula not in self.nonzero
+            if not known:
+                open_factors[factor] = 1
+                continue
+            may_vanish = may_vanish or zero
+            direction *= known * bound.slope
+        if not open_factors and direction > 0 and (sign == ">= 0" or not may_vanish):
+            return None
+        return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
+
+    def _new_range(self, quantity: Expr) -> _Range:
+        """Return the range that follows from the form of a quantity: -1 to 1 for a sine, nonnegative for a square."""
+        if isinstance(quantity, sin | cos):
+            return _Range(Integer(-1), Integer(1))
+        return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
+
+    def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
+        """Add the range that a product ``(q - a)*(b - q)`` of two factors states; return whether it states one."""
+        first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
+        if more or direction * first.slope * second.slope > 0:
+            return False
+        own = self.ranges.setdefault(first.quantity, self._new_range(first.quantity))
+        own.narrow(first.root, sign == ">= 0", above=True)
+        own.narrow(second.root, sign == ">= 0", above=False)
+        return True
+
+    def _excludes(self, formula: Expr) -> bool:
+        """Return whether the ranges exclude the zeros of a formula; a bound at a zero is taken out of its range."""
+        bound = _bound(formula)
+        if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
+            return True
+        own = self.ranges.get(bound.quantity)
+        if own is None:
+            if not isinstance(bound.quantity, sin | cos):
+                return False
+            own = self._new_range(bound.quantity)
+            return own.sign_of(bound.root) != (0, True) and not own.sign_of(bound.root)[1]
+        if own.low == bound.root:
+            own.low_closed = False
+        if own.high == bound.root:
+            own.high_closed = False
+        return bool(own.sign_of(bound.root)[0])
+
+    def grants(self, quantity: Expr, own: _Range) -> bool:
+        """Return whether the range of cos(u) follows from -1 <= cos(u) <= 1 and nonzero sine or cosine of u/2."""
+        if not isinstance(quantity, cos):
+            return False
+        half = quantity.args[0] / 2
+        factors = {factor for product in self.products if product[2] == "> 0" for factor in product[0]}
+        known = {*self.nonzero, *factors}
+        below = own.low == -1 and (own.low_closed or cos(half) in known)
+        above = own.high == 1 and (own.high_closed or sin(half) in known)
+        return below and above
+
+    def _angle_excludes(self, function: Expr) -> bool:
+        """Return whether the range of an angle lies between two neighbouring zeros of its sine or cosine."""
+        angle = _bound(function.args[0])
+        own = self.ranges.get(angle.quantity)
+        if own is None or own.low is None or own.high is None or angle.slope < 0 or angle.root != 0:
+            return False
+        scale = (function.args[0] / angle.quantity).cancel()
+        if not scale.is_Rational:
+            return False
+        ends = (-sympy.pi / 2, sympy.pi / 2) if isinstance(function, cos) else (Integer(0), sympy.pi)
+        below, above = (scale * own.low - ends[0], ends[1] - scale * own.high)
+        return bool(
+            (below.is_positive or (below == 0 and not own.low_closed))
+            and (above.is_positive or (above == 0 and not own.high_closed))
+        )
+
+
+# -- as text ----------------------------------------------------------------------------------------------------------
+
+
+def _texts(conditions: _Conditions) -> list[str]:
+    positive = _with_positive_symbols(conditions.ranges)
+    one_sided: list[str] = []
+    two_sided: list[str] = []
+    for quantity, own in conditions.ranges.items():
+        text = _range_text(quantity, own)
+        if text and not _follows(quantity, own, positive) and not conditions.grants(quantity, own):
+            (two_sided if text.count("=") + text.count("<") > 1 and text.count("<") > 1 else one_sided).append(text)
+    products = [each for each in conditions.products if not _holds(each[1] * Mul(*each[0]), each[2], positive)]
+    one_sided += [_product_text(factors, direction, sign) for factors, direction, sign in products]
+    one_sided += [
+        f"{as_text(formula)} {sign}" for formula, sign in conditions.whole if not _holds(formula, sign, positive)
+    ]
+    nonzero = [_nonzero_text(formula) for formula in conditions.nonzero if not _holds(formula, "!= 0", positive)]
+    return [*sorted(dict.fromkeys(one_sided)), *sorted(dict.fromkeys(two_sided)), *sorted(dict.fromkeys(nonzero))]
+
+
+def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str:
+    """Return the text of a product that is positive or nonnegative; ``(x - 1)*(x + 1) >= 0`` is ``abs(x) >= 1``."""
+    bounds = [_bound(factor) for factor in factors]
+    if len(bounds) == 2:
+        first, second = bounds
+        if first.quantity == second.quantity and first.root == -second.root:  # outside of both: see _between
+            root = first.root if first.root.is_positive else second.root
+            return f"{as_text(Abs(first.quantity))} {sign[:-2]} {as_text(root)}"
+        functions = {type(bound.quantity): bound.quantity for bound in bounds if bound.root == 0}
+        if set(functions) == {sin, cos} and functions[sin].args == functions[cos].args:
+            double = sin(2 * functions[sin].args[0]) * direction * first.slope * second.slope
+            return f"{as_text(double)} {sign}"
+    return f"{as_text(direction * Mul(*factors))} {sign}"
+
+
+def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
+    """Return symbols that are known to be positive or nonnegative, with substitutes that SymPy assumes to be so."""
+    values: dict[Expr, Expr] = {}
+    for quantity, own in ranges.items():
+        if quantity.is_Symbol and own.low is not None and own.low.is_nonnegative:
+            strict = own.low.is_positive or not own.low_closed
+            values[quantity] = Dummy(positive=True) if strict else Dummy(nonnegative=True)
+    return values
+
+
+def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
+    """Return whether a condition follows from the signs of the symbols."""
+    value = formula.xreplace(dict(positive))
+    if sign == ">= 0":
+        return surely_nonnegative(value)
+    return bool(_always_positive(value) or (sign == "!= 0" and (value.is_nonzero or _always_positive(-value))))
+
+
+def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
+    """Return whether the range of a compound quantity follows from the signs of its symbols."""
+    if quantity.is_Symbol or own.high is not None or own.low is None:
+        return False
+    return _holds(quantity - own.low, ">= 0" if own.low_closed else "> 0", positive)
+
+
+def _range_text(quantity: Expr, own: _Range) -> str:
+    least, most = own.low, own.high
+    if isinstance(quantity, sin | cos):
+        least = None if least == -1 and own.low_closed else least
+        most = None if most == 1 and own.high_closed else most
+    if surely_nonnegative(quantity) and least == 0 and own.low_closed:
+        least = None
+    below, above = "<=" if own.low_closed else "<", "<=" if own.high_closed else "<"
+    text = as_text(quantity)
+    if least is not None and most is not None:
+        return f"{as_text(least)} {below} {text} {above} {as_text(most)}"
+    if least is not None:
+        return _one_sided(quantity, least, ">=" if own.low_closed else ">")
+    return _one_sided(quantity, most, above) if most is not None else ""
+
+
+def _one_sided(quantity: Expr, root: Expr, sign: str) -> str:
+    """Return ``quantity sign root``; a difference that is compared with zero becomes two sides: ``x >= y``."""
+    terms = quantity.args if quantity.is_Add else ()
+    positive = [term for term in terms if not term.could_extract_minus_sign()]
+    if root == 0 and len(terms) == 2 and len(positive) == 1:
+        return f"{as_text(positive[0])} {sign} {as_text(positive[0] - quantity)}"
+    return f"{as_text(quantity)} {sign} {as_text(root)}"
+
+
+def _nonzero_text(formula: Expr) -> str:
+    bound = _bound(formula)
+    return _one_sided(bound.quantity, bound.root, "!=")

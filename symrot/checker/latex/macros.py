@@ -1,0 +1,176 @@
+r"""Commands that are short for other LaTeX, such as ``\dv{x}{t}``, and commands that mean nothing in a formula.
+
+The tokens of the longer form have the position of the command, and the tokens of an argument keep their own positions.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+
+from symrot.errors import InputError, complaint
+from symrot.latex.tokens import Token, tokens
+
+__all__ = ["INSTEAD", "expanded"]
+
+_SHORT: Sequence[tuple[str, Mapping[int, str]]] = (
+    (r"\vb \va \vectorbold \vectorarrow \pmb \textbf", {1: r"\mathbf{#1}"}),
+    (r"\vu \vectorunit", {1: r"\hat{\mathbf{#1}}"}), (r"\widehat", {1: r"\hat{#1}"}), (r"\dd", {1: r"\mathrm{d}#1"}),
+    (r"\dv", {1: r"\frac{d}{d#1}", 2: r"\frac{d #1}{d#2}"}),
+    (r"\pdv", {1: r"\frac{\partial}{\partial#1}", 2: r"\frac{\partial #1}{\partial#2}",
+                3: r"\frac{\partial^2 #1}{\partial#2\partial#3}"}),
+    (r"\boxed \fbox \cancel \ensuremath \underbrace \overbrace", {1: r"{#1}"}), (r"\stackrel \overset", {2: r"#2"}),
+    (r"\nicefrac \sfrac", {2: r"\frac{#1}{#2}"}), (r"\abs", {1: r"\left|#1\right|"}),
+    (r"\norm", {1: r"\left\|#1\right\|"}),
+    (r"\num", {1: r"#1"}), (r"\ang", {1: r"#1^\circ"}), (r"\vdot \dotproduct \bullet", {0: r"\cdot"}),
+    (r"\cross \cp \crossproduct \wedge", {0: r"\times"}), (r"\Tr \tr \trace", {0: r"\operatorname{tr}"}),
+    (r"\Rightarrow \implies \iff \Leftrightarrow \Longrightarrow \Longleftrightarrow \land \therefore", {0: ","}),
+    (r"\coloneqq \triangleq \doteq \coloneq", {0: "="}), (r"\dagger", {0: r"\top"}), (r"\colon", {0: ":"}),
+    (r"\iint", {0: r"\int\int"}), (r"\iiint", {0: r"\int\int\int"}),
+)  # fmt: skip
+
+MACROS: Mapping[str, Mapping[int, str]] = {command: forms for names, forms in _SHORT for command in names.split()}
+"""Command -> number of its arguments -> the LaTeX that it is short for. A star after the command means nothing."""
+
+OF_ORDER: Mapping[str, Mapping[int, str]] = {
+    "\\dv": {1: r"\frac{d^{#0}}{d#1^{#0}}", 2: r"\frac{d^{#0} #1}{d#2^{#0}}"},
+    "\\pdv": {1: r"\frac{\partial^{#0}}{\partial#1^{#0}}", 2: r"\frac{\partial^{#0} #1}{\partial#2^{#0}}"},
+}
+"""Command with an order in square brackets, ``\\dv[2]{x}{t}`` -> number of arguments -> LaTeX; ``#0`` is the order."""
+
+DROPPED = {
+    **dict.fromkeys(("\\label", "\\tag", "\\color", "\\hspace", "\\vspace", "\\index"), 1),
+    **dict.fromkeys(("\\phantom", "\\hphantom", "\\vphantom"), 1),
+    **dict.fromkeys(("\\nonumber", "\\hfill", "\\mathstrut", "\\strut", "\\allowbreak", "\\thinspace", "\\enspace"), 0),
+}
+"""Commands that say nothing about the formula -> the number of their arguments."""
+
+BRACED = ("\\underbrace", "\\overbrace")
+"""Commands after which an index or power is a remark on the formula, not a part of it."""
+
+LONGEST_NUMBER = 8
+"""The most tokens that are looked at for the number of an equation."""
+
+INSTEAD = {
+    **dict.fromkeys(("\\SI", "\\si", "\\unit"), "the number without its unit"),
+    **dict.fromkeys(("\\approx", "\\simeq"), "'=' with the digits that you know"),
+    **dict.fromkeys(("\\sim", "\\propto"), "'=' and a factor"),
+    **dict.fromkeys(("\\neq", "\\ne"), "a claim with '='"),
+    **dict.fromkeys(("\\to", "\\rightarrow", "\\mapsto"), "'='"),
+    **dict.fromkeys(("\\ldots", "\\cdots", "\\dots"), "all terms"),
+    **dict.fromkeys(("\\eqref", "\\ref"), "the formula itself"),
+    **dict.fromkeys(("\\forall", "\\in"), "the equation alone"),
+    **dict.fromkeys(("\\text", "\\mbox", "\\textrm"), "the formula alone, without words"),
+    "\\log": "\\ln, or \\log_{10}(x) as \\frac{\\ln x}{\\ln 10}",
+    "\\nabla": "the derivatives \\frac{\\partial f}{\\partial x}",
+    "\\infty": "a finite number", "\\oint": "an integral \\int_a^b with limits", "\\prod": "the factors of the product",
+    "\\lim": "the limit itself", "\\newcommand": "the formula without macros of your own",
+}  # fmt: skip
+"""Command that is refused -> what to write instead."""
+
+
+def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Token]:
+    r"""Return tokens in which the longer form replaces each command that is short for other LaTeX.
+
+    Raises
+    ------
+    InputError
+        For a command without its arguments.
+
+    Examples
+    --------
+    >>> from symrot.latex.tokens import tokens
+    >>> "".join(piece.text for piece in expanded(tokens(r"\dv[2]{x}{t} \label{eq:a}"), ""))
+    '\\frac{d^{2}x}{dt^{2}}'
+    """
+    return list(_Expansion(pieces, source, where).all())
+
+
+@cache
+def _template(text: str) -> tuple[Token, ...]:
+    return tuple(tokens(text)[:-1])
+
+
+class _Expansion:
+    def __init__(self, pieces: Sequence[Token], source: str, where: str) -> None:
+        self.pieces, self.source, self.where = pieces, source, where
+        self.place = 0
+
+    def all(self) -> Iterator[Token]:
+        while self.place < len(self.pieces):
+            piece = self.pieces[self.place]
+            self.place += 1
+            if piece.kind == "group" and self.at("\\bf", "\\boldmath"):  # {\\bf a}
+                self.place += 1
+                yield Token("font", "\\mathbf", piece.start)
+                yield piece
+            elif piece.text in ("\\quad", "\\qquad") and (length := self.equation_number()):
+                self.place += length
+            elif piece.text in DROPPED:
+                for _ in range(DROPPED[piece.text]):
+                    self.argument(piece)
+            elif piece.kind != "command" or piece.text not in MACROS:
+                yield piece
+            else:
+                yield from self.longer(piece)
+
+    def equation_number(self) -> int:
+        r"""Return how many tokens the number of the equation has, as in ``a = b \qquad (5.12)``; 0 without one."""
+        rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
+        texts = [piece.text for piece in rest]
+        end = texts.index(")") if texts[:1] == ["("] and ")" in texts[:-1] else 0
+        inside = rest[1:end]
+        is_number = all(piece.kind == "number" or piece.text in ".-" for piece in inside)
+        return end + 1 if inside and is_number and rest[end + 1].kind in ("end", "line", "close") else 0
+
+    def longer(self, command: Token) -> Iterator[Token]:
+        """Yield the tokens of the longer form of a command, whose arguments follow."""
+        forms = MACROS[command.text]
+        if self.at("*"):
+            self.place += 1
+        arguments = [self.order() if command.text in OF_ORDER else ()]
+        forms = OF_ORDER[command.text] if arguments[0] else forms
+        while len(arguments) <= max(forms) and (len(arguments) <= min(forms) or self.at("{")):
+            arguments.append(self.argument(command))
+        last = ""
+        for piece in _template(forms[len(arguments) - 1]):
+            if last == "#":
+                yield from expanded(arguments[int(piece.text)], self.source, self.where)
+            elif piece.text != "#":
+                yield piece._replace(start=command.start)
+            last = piece.text
+        if command.text in BRACED and self.at("_", "^"):
+            self.place += 1
+            self.argument(command)
+
+    def at(self, *texts: str) -> bool:
+        return self.place < len(self.pieces) and self.pieces[self.place].text in texts
+
+    def order(self) -> Sequence[Token]:
+        """Read the order of a derivative in square brackets; return its tokens, or no tokens if there is no order."""
+        if not self.at("["):
+            return []
+        texts = [piece.text for piece in self.pieces[self.place :]]
+        end = self.place + (texts.index("]") if "]" in texts else 0)
+        inside = self.pieces[self.place + 1 : end]
+        self.place = end + 1
+        return inside
+
+    def argument(self, command: Token) -> Sequence[Token]:
+        """Read the argument of a command and return its tokens: a group without its braces, or a single token."""
+        while self.place < len(self.pieces) and self.pieces[self.place].kind == "space":
+            self.place += 1
+        first = self.place
+        if not self.at("{"):
+            if self.place >= len(self.pieces) or self.pieces[first].kind == "end":
+                raise self.fail(command)
+            self.place += 1
+            return self.pieces[first : self.place]
+        depth = 0
+        for place in range(first, len(self.pieces)):
+            depth += (self.pieces[place].text == "{") - (self.pieces[place].text == "}")
+            if depth == 0:
+                self.place = place + 1
+                return self.pieces[first + 1 : place]
+        raise self.fail(command)
+
+    def fail(self, command: Token) -> InputError:
+        return complaint(self.source, self.where, command.start, f"a group in braces after {command.text}")

@@ -1,0 +1,130 @@
+r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
+
+They are read as functions only if the text has both a cosine and a sine in this form, and no c or s by itself.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
+
+from symrot.latex.tokens import GREEK, Token
+
+__all__ = ["Shorthand", "shorthands"]
+
+FUNCTIONS: tuple[Mapping[str, str], ...] = (
+    {"c": "cos", "s": "sin", "v": "vers"},
+    {"C": "cos", "S": "sin", "V": "vers"},
+)
+"""Letters that are used as short forms together -> their functions; vers is the versine 1 - cos."""
+
+NO_ANGLES = ("pi", "omega", "Omega")
+"""Greek letters that name no angle: the number, and rates."""
+
+FEWEST_NUMBERED = 2
+"""The fewest cosines and the fewest sines with numbers, as c_1 and c_2, that are evidently short forms."""
+
+
+class Shorthand(NamedTuple):
+    r"""A short form: its function, and the angles whose sum is the argument; empty if an angle follows it."""
+
+    function: str
+    angles: tuple[str, ...]
+
+
+def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[int, Shorthand]:
+    r"""Return the short forms of a LaTeX text: position of the letter c or s -> what it stands for.
+
+    Parameters
+    ----------
+    pieces : sequence of Token
+        The tokens of the text.
+    declared : collection of str
+        Names that the claim declares. If c or s is one of them, the text has no short forms.
+
+    Examples
+    --------
+    >>> from symrot.latex.tokens import tokens
+    >>> shorthands(tokens(r"c_\psi s_\psi"))
+    {0: Shorthand(function='cos', angles=('psi',)), 7: Shorthand(function='sin', angles=('psi',))}
+    >>> shorthands(tokens(r"c_\psi + k"))
+    {}
+    """
+    bases = {name.partition("_")[0] for name in declared}
+    cases = [_of_letters(pieces, letters) for letters in FUNCTIONS if not bases & {*letters}]
+    return {start: form for short in cases for start, form in short.items()}
+
+
+def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
+    """Return the short forms with letters such as c and s, by position; empty if c or s is a name by itself."""
+    named: dict[int, Shorthand] = {}
+    numbered: dict[int, tuple[str, str]] = {}
+    for before, piece in enumerate(pieces[:-1]):
+        if piece.kind != "letter" or piece.text not in letters:
+            continue
+        function = letters[piece.text]
+        place = _after_power(pieces, before + 1)
+        after = pieces[place]
+        subscript = _subscript(pieces, place + 1) if after.text == "_" else ""
+        if _is_angle(after):
+            named[piece.start] = Shorthand(function, ())
+        elif _is_angle_name(subscript):
+            named[piece.start] = Shorthand(function, (subscript,))
+        elif subscript.isdigit():
+            numbered[piece.start] = function, subscript
+        elif after.text != "_" and function != "vers":
+            return {}
+    short = named or _numbered(pieces, numbered)
+    return short if {"cos", "sin"} <= {form.function for form in short.values()} else {}
+
+
+def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
+    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; empty if the text has too few of them."""
+    numbers = {name: {number for function, number in numbered.values() if function == name} for name in ("cos", "sin")}
+    if min(map(len, numbers.values())) < FEWEST_NUMBERED:
+        return {}
+    letter = _numbered_angle(pieces, {digit for _, number in numbered.values() for digit in number})
+    if not letter:
+        return {}
+    return {
+        start: Shorthand(function, tuple(f"{letter}_{digit}" for digit in digits))
+        for start, (function, digits) in numbered.items()
+    }
+
+
+def _after_power(pieces: Sequence[Token], place: int) -> int:
+    """Return the place after a power of one token, as in ``c^2_\\theta``, or the given place if there is no power."""
+    if pieces[place].text != "^" or place + 4 > len(pieces):
+        return place
+    is_group = pieces[place + 1].text == "{" and pieces[place + 3].text == "}"
+    return place + (4 if is_group else 2)
+
+
+def _is_angle_name(name: str) -> bool:
+    return name in GREEK and name not in NO_ANGLES
+
+
+def _is_angle(piece: Token) -> bool:
+    return piece.kind == "command" and _is_angle_name(piece.text[1:])
+
+
+def _subscript(pieces: Sequence[Token], place: int) -> str:
+    """Return the subscript that starts at a place if it is one Greek letter or a number, else an empty text."""
+    grouped = pieces[place].text == "{"
+    inner = pieces[place + grouped]
+    if grouped and pieces[place + 2].text != "}":
+        return ""
+    return inner.text.removeprefix("\\") if inner.kind in ("command", "number") else ""
+
+
+def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
+    r"""Return the only Greek letter, or q, that has some of the digits as subscripts, as in ``\theta_1``.
+
+    The letter is theta for a text without Greek letters, and an empty text if two letters have such subscripts.
+    """
+    numbered: dict[str, set[str]] = {}
+    for place, piece in enumerate(pieces[:-2]):
+        if (_is_angle(piece) or piece.text == "q") and pieces[place + 1].text == "_":
+            numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, place + 2))
+    if not numbered and not any(_is_angle(piece) for piece in pieces):
+        return "theta"
+    letters = [letter for letter, subscripts in numbered.items() if subscripts & {*digits}]
+    return letters[0] if len(letters) == 1 else ""

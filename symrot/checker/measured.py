@@ -1,0 +1,141 @@
+"""Verdicts on numbers with units, such as ``1500 rpm = 157.08 rad/s``, and on angles whose unit was left out."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.values import decide_value
+from symrot.checker.rounding import rounded_value
+from symrot.checker.units.check import check_dimensions
+from symrot.checker.units.conversion import Measured
+from symrot.checker.units.units import unit_text
+from symrot.checker.verdict import Diagnosis, Repair, Verdict
+from symrot.errors import InputError
+
+__all__ = ["in_degrees", "with_units"]
+
+CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
+TURN = 7
+"""An angle of at least this number, without pi, is probably in degrees: a full turn is 6.28 rad."""
+
+
+def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
+    """Return the verdict on a claim with a name for each product of units.
+
+    Parameters
+    ----------
+    claim : Claim
+    measured : Measured
+        The text and its units.
+    decide : callable
+        The function that decides a claim without units.
+
+    Raises
+    ------
+    InputError
+        For a sum of terms in different units.
+    """
+    assert claim.relation is not None
+    units = {name: unit_text(unit.dimension) for name, unit in measured.units.items()}
+    dimensions = check_dimensions(claim.relation[1:], units=units)
+    if dimensions.status == "inconsistent" and "the sum" in dimensions.text:
+        raise InputError(f"expected terms with one unit, got a sum in which {measured.restored(dimensions.text)}")
+    if dimensions.status == "inconsistent" and measured.is_sure:
+        diagnosis = Diagnosis("dimension", f"the units do not fit: {dimensions.text}")
+        return Verdict("false", dimension=dimensions, diagnosis=diagnosis)
+    sign, *sides = claim.relation
+    factors = {name: unit.factor for name, unit in measured.units.items()}
+    left, right = (_in_si(side, factors) for side in sides)
+    plain = claim.with_relation((sign, left, right), units={}, alternatives=())
+    rounded = _rounded(plain, sides, factors, measured)
+    verdict = decide(plain) if rounded is None else rounded
+    factors_in_words = [unit.note for unit in measured.units.values() if unit.note]
+    return replace(verdict, dimension=dimensions, notes=(*verdict.notes, *factors_in_words))
+
+
+def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
+    """Return a tree with the factors of units in place of their names."""
+    if tree.kind == "name" and tree.value in factors:
+        return factors[str(tree.value)]
+    return replace(tree, args=tuple(_in_si(child, factors) for child in tree.args))
+
+
+def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
+    """Return the verdict on an equation with a decimal number and its unit as a side, by rounding; None for others."""
+    for side, other in (sides, sides[::-1]):
+        digits, unit = _decimal(side, measured.text)
+        other_digits, _ = _decimal(other, measured.text)
+        if not digits or not all(n.value == "pi" or n.value in factors for _, n in walk(other) if n.kind == "name"):
+            continue
+        if other_digits and len(other_digits) > len(digits):
+            continue
+        value = product([_in_si(other, factors), Node("inv", None, (factors[unit],))])
+        worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
+        decision = decide_value(worked)
+        if decision.verdict == "true":
+            return Verdict(
+                "true", notes=(f"to the digits given: the value rounds to {digits} {measured.units[unit].text}",)
+            )
+        if decision.verdict != "false":
+            return None
+        right = rounded_value(worked)
+        if not right:
+            return Verdict("false", counterexample=decision.counterexample)
+        place = measured.source.rfind(digits) if side is sides[1] else measured.source.find(digits)
+        repaired = measured.source[:place] + right + measured.source[place + len(digits) :]
+        sentence = f"a number is wrong: the value rounds to {right} {measured.units[unit].text}, not to {digits}"
+        return Verdict("false", counterexample=decision.counterexample, diagnosis=Diagnosis("digits", sentence),
+                       repairs=(Repair(repaired.strip(), "digits", 1.0),))  # fmt: skip
+    return None
+
+
+def _decimal(tree: Node, source: str) -> tuple[str, str]:
+    """Return the digits and the unit of a number with a unit, as typed; empty texts for any other tree."""
+    if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
+        return "", ""
+    first, unit = tree.args
+    digits = source[first.span[0] : first.span[1]]
+    return (digits, str(unit.value)) if re.fullmatch(r"\d+\.\d+", digits) else ("", "")
+
+
+def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
+    """Return the verdict with a note, or a diagnosis, on angles that are plain numbers and may be in degrees."""
+    if claim.relation is None:
+        return verdict
+    sign, left, right = claim.relation
+    angles = {n.args[0] for side in (left, right) for _, n in walk(side) if _is_large_angle(n)}
+    if not angles:
+        return verdict
+    changed = claim.with_relation((sign, _degrees(left), _degrees(right)), alternatives=())
+    try:
+        other = decide(changed)
+    except InputError:
+        return verdict
+    numbers = " and ".join(sorted(str(angle.value) for angle in angles))
+    note = f"the angle {numbers} is in radians; in degrees, written {numbers}°, the claim is {other.verdict}"
+    if verdict.verdict == "false" and other.verdict == "true":
+        source = claim.sources.get("claim", "")
+        degree = "^\\circ" if "\\" in source else "°"
+        pattern = "|".join(str(angle.value) for angle in angles)
+        repaired = re.sub(rf"(?<![\w.])({pattern})(?![\w.°])", lambda match: match[1] + degree, source)
+        diagnosis = Diagnosis("degrees", f"the angle {numbers} is in degrees, but is read in radians")
+        return replace(verdict, diagnosis=diagnosis, repairs=(Repair(repaired, "degrees", 0.5),), notes=verdict.notes)
+    return replace(verdict, notes=(*verdict.notes, note))
+
+
+def _is_large_angle(node: Node) -> bool:
+    """Return whether a tree is a circular function of a number that is probably in degrees."""
+    return (
+        node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
+    )
+
+
+def _degrees(tree: Node) -> Node:
+    """Return a tree in which large angles are taken as degrees and converted to radians."""
+    args = tuple(map(_degrees, tree.args))
+    if _is_large_angle(tree):
+        args = (product([tree.args[0], Node("name", "pi"), number(Fraction(1, 180))]),)
+    return replace(tree, args=args)

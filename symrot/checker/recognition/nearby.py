@@ -1,0 +1,454 @@
+"""Known formulas from which a claim differs by one fault: a numeric search, whose results remain to be proven.
+
+For each known formula of the quantity that a claim names, the claim's formula should have the values of the known
+formula. :mod:`symrot.checker.recognition.parts` finds the single part, if there is one, that makes the values differ.
+"""
+
+import math
+import re
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Any, NamedTuple
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.tree import Node, Path, number, replaced, walk
+from symrot.checker.recognition.identification import UNIT_OF_NAME
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
+from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
+from symrot.checker.recognition.parts import (
+    LACKING,
+    Change,
+    Letters,
+    Part,
+    PointOfLetters,
+    Values,
+    Variant,
+    is_absent,
+    is_multiple,
+    multiples,
+    near,
+    parts,
+    values_of,
+    variants,
+)
+from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
+from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.repair.points import UndefinedValue, points
+from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
+from symrot.checker.units.units import read_unit
+
+__all__ = ["Near", "near_formulas"]
+
+MOST_DRAWS = 40
+"""The most random points that are drawn to find some where a formula has a value."""
+POINTS = 3
+"""The number of points at which formulas are compared."""
+MOST_PAIRS = 1500
+"""The most pairs of a known formula and a renaming that are compared."""
+MOST_NODES = 500
+"""The most symbols and operations of a formula that is searched."""
+FEW = 3
+"""The most symbols of a known formula with an angle that a claim without angles may mean."""
+SQUARED = ", squared"
+TIME = Node("name", "t")
+
+
+class Near(NamedTuple):
+    """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
+
+    ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
+    than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
+    """
+
+    cost: float
+    code: str
+    tree: Node
+    known: Known
+    renamed: int
+    has_other_unit: bool
+    is_shifted: bool
+
+
+def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
+    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first."""
+    if sum(1 for _ in walk(named.formula)) > MOST_NODES:
+        return []
+    letters = _letters(claim, named)
+    if letters is None:
+        return []
+    scale = values_of(named.formula, letters.points)
+    if scale is None:
+        return []
+    search = _search(named, letters)
+    names = [_text(atom) for atom in letters.atoms]
+    inside = {node for angle in letters.angles for node in _nodes(angle)}
+    angles = {_text(atom) for atom in letters.atoms if atom in inside}
+    nearest: dict[tuple[Node, str], Near] = {}
+    pairs = 0
+    for known in _known_formulas():
+        is_wrong_kind = _is_column(known) != is_matrix(scale[0]) or not fits(known)
+        is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
+        if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
+            continue
+        for renaming in renamings(_names(known), names, angles):
+            pairs += 1
+            if pairs > MOST_PAIRS:
+                break
+            for candidate in _compared(search, known, renaming):
+                key = (candidate.tree, known.name)
+                if key not in nearest or candidate.cost < nearest[key].cost:
+                    nearest[key] = candidate
+    return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
+    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses."""
+    numeric = NumericFilter(claim)
+    hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
+    narrow = any(node.value in ("asin", "acos", "cos") for node in (named.side, *_nodes(named.formula)))
+    drawn = points(
+        numeric.symbols, numeric.functions, numeric.definitions, hypotheses, frozenset(),
+        count=POINTS if hypotheses else MOST_DRAWS, most=0.9 if narrow else 1.7,
+    )  # fmt: skip
+    roots = [node.args[0] for node in _nodes(named.formula) if node.kind == "call" and node.value == "sqrt"]
+    defined = [point for point in drawn if values_of(named.formula, [point]) is not None]
+    at = sorted(defined, key=lambda point: -min((point.value(root) for root in roots), default=0.0))[:POINTS]
+    if len(at) < POINTS:
+        return None
+    trees, atoms, angles = [named.formula], dict[Node, Values](), dict[Node, Values]()
+    while trees:
+        tree = trees.pop()
+        if tree.kind == "call" and tree.value in OPPOSITE:
+            angles[tree.args[0]] = values_of(tree.args[0], at) or ()
+        if _is_atom(tree):
+            if tree.kind == "name" and tree.value in numeric.definitions:
+                trees.append(numeric.definitions[str(tree.value)])
+            elif tree.value != "pi":
+                atoms[tree] = values_of(tree, at) or ()
+        else:
+            trees.extend(tree.args)
+    if not all(map(len, (*atoms.values(), *angles.values()))) or any(is_matrix(v[0]) for v in atoms.values()):
+        return None
+    places = [
+        PointOfLetters(
+            dict(point.symbols), {}, numeric.definitions, _pieces(named.formula),
+            rates={atom: values[place] for atom, values in atoms.items() if atom.kind == "call"},
+        )
+        for place, point in enumerate(at)
+    ]  # fmt: skip
+    return Letters(atoms, angles, places)
+
+
+def _pieces(tree: Node) -> frozenset[int]:
+    """Return the identities (``id``) of the parts of a tree."""
+    return frozenset(id(node) for _, node in walk(tree))
+
+
+def _nodes(tree: Node) -> list[Node]:
+    return [node for _, node in walk(tree)]
+
+
+def _is_atom(tree: Node) -> bool:
+    if tree.kind == "name":
+        return True
+    inner = tree
+    while inner.kind == "call" and inner.value == "diff" and set(inner.args[1:]) == {TIME}:
+        inner = inner.args[0]
+    return inner.kind == "call" and inner.args == (TIME,) and tree.kind == "call"
+
+
+def _text(atom: Node) -> str:
+    """Return the text of a symbol or rate, as SymPy's printer writes it."""
+    if atom.kind == "name":
+        return str(atom.value)
+    return f"diff({_text(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (
+        f"{atom.value}(t)"
+    )  # fmt: skip
+
+
+@cache
+def _known_formulas() -> tuple[Known, ...]:
+    formulas = [known for group in by_fingerprint().values() for known in group]
+    return tuple(known for known in formulas if not known.is_step and not known.is_relation)
+
+
+@cache
+def _names(known: Known) -> tuple[str, ...]:
+    words = dict.fromkeys(re.findall(r"[A-Za-z]\w*", known.text))
+    return tuple(word for word in words if word not in _BUILT_IN)
+
+
+_BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "abs", "Abs", "atan2", "acos", "asin"}
+
+
+@cache
+def _known_pieces(known: Known) -> frozenset[int]:
+    return _pieces(_tree(known))
+
+
+def _is_column(known: Known) -> bool:
+    """Return whether a known formula is for a vector or matrix."""
+    return known.text.startswith("Matrix") and not ending_of(known.name).endswith("atan2")
+
+
+@cache
+def _has_angles(known: Known) -> bool:
+    return re.search(r"\b(sin|cos|tan)\(", known.text) is not None
+
+
+@cache
+def _tree(known: Known) -> Node:
+    return read_expression(known.text)
+
+
+class Search(NamedTuple):
+    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point."""
+
+    named: NamedFormula
+    letters: Letters
+    variants: dict[Path, list[tuple[float, Variant]]]
+
+    def matching(self, part: Part) -> Iterator[Variant]:
+        """Yield the variants of a part that have the values that the part should have."""
+        values = self.variants.get(part.path, [])
+        (first, *_) = part.needed
+        if is_matrix(first) or not values:
+            return
+        slack = abs(first) * CLOSE
+        place = bisect_left(values, first - slack, key=lambda pair: pair[0])
+        while place < len(values) and values[place][0] <= first + slack:
+            variant = values[place][1]
+            if all(map(near, variant.values, part.needed)):
+                yield variant
+            place += 1
+
+
+CLOSE = 1e-8
+"""The largest relative difference between values that are compared further."""
+
+
+def _search(named: NamedFormula, letters: Letters) -> Search:
+    everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
+        replace(point, symbols={**point.symbols, str(LACKING.value): value})
+        for point, value in zip(letters.points, RANDOM, strict=True)
+    ])  # fmt: skip
+    kinds = {path: node.kind for path, node in walk(named.formula)}
+    by_path = {}
+    for path, node in walk(named.formula):
+        parent = kinds[path[:-1]] if path else ""
+        made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
+        by_path[path] = sorted(made, key=lambda pair: pair[0])
+    return Search(named, letters, by_path)
+
+
+def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near]:
+    """Return the formulas that result from one change, if a claim means a known formula under a renaming."""
+    named, letters = search.named, search.letters
+    atoms = {_text(atom): atom for atom in letters.atoms}
+    values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
+    own = [
+        PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, _known_pieces(known))
+        for n in range(POINTS)
+    ]
+    target = values_of(_tree(known), own)
+    if target is None:
+        return []
+    changes: list[tuple[Path, Change]] = []
+    for view in (*_views(known, target), *_with_other_products(known, own)):
+        needed = _needed(named, known, view, letters)
+        if needed is not None and _is_promising(search, needed):
+            for part in parts(named.formula, letters.points, needed):
+                changes += ((part.path, change) for change in _changes(search, part))
+    trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
+    actual = values_of(named.formula, letters.points)
+    if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
+        for part in parts(_tree(known), own, actual):
+            if is_absent(part):
+                code = "missing_term" if part.parent == "sum" else "factor"
+                cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
+                trees.append((cost, code, _renamed(_tree(known), {mine: LACKING if other is None else atoms[other]
+                                                                  for mine, other in renaming.items()})))  # fmt: skip
+    if not trees:
+        return []
+    absent = next((name for name, other in renaming.items() if other is None), None)
+    name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
+    lacking = Node("name", name) if absent is not None else None
+    if lacking in letters.atoms:
+        return []
+    nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
+    other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
+    renamed = strangeness(renaming)
+    is_shifted = actual is not None and _is_shifted(actual, target)
+    near_ones = []
+    for cost, code, tree in trees:
+        has_lacking = LACKING in _nodes(tree)
+        if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
+            continue
+        whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
+        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted))
+    return near_ones
+
+
+def _is_shifted(actual: Values, known: Values) -> bool:
+    """Return whether values are larger than those of a known formula, and no multiple of them."""
+    if any(map(is_matrix, (*actual, *known))) or not all(known):
+        return False
+    ratios = [value / other for value, other in zip(actual, known, strict=True)]
+    return min(ratios) > 1 and not all(near(ratio, ratios[0]) for ratio in ratios)
+
+
+def _is_promising(search: Search, needed: Values) -> bool:
+    """Return whether some part has a variant, or a multiple, with the values that it should have at two points."""
+    formula, at = search.named.formula, search.letters.points[:2]
+    return any(
+        is_absent(part) or is_multiple(part) or any(search.matching(part)) for part in parts(formula, at, needed[:2])
+    )
+
+
+def _changes(search: Search, part: Part) -> Iterator[Change]:
+    if is_absent(part):
+        code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
+        yield Change(number(int(part.parent == "product")), code, COST[code] + cost)
+    elif is_multiple(part):
+        yield from multiples(part)
+    yield from (variant.change for variant in search.matching(part))
+
+
+def _repaired(formula: Node, path: Path, change: Change) -> Node:
+    """Return a formula with a changed part; its other numbers stay where they are."""
+    tree = flattened(replaced(formula, path, lambda _: change.made))
+    return normalise_factors(tree) if change.code == "factor" else tree
+
+
+def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
+    """Yield the values of a known formula with the other sign of the products of inertia in it."""
+    names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
+    if names:
+        changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
+        values = values_of(_tree(known), [PointOfLetters(symbols, {}, {}) for symbols in changed])
+        if values is not None:
+            yield values
+
+
+def _views(known: Known, values: Values) -> Iterator[Values]:
+    """Yield values unchanged and, for a matrix, also transposed, doubled, and with a quaternion's scalar last."""
+    yield values
+    if not is_matrix(values[0]):
+        return
+    rows, columns = shape_of(values[0]) or (0, 0)
+    if rows == columns:
+        yield tuple(map(transposed, values))
+    doubled = [tuple(times(2.0, value) for value in values)] if known.scaled else []
+    yield from doubled
+    if rows == len(LAST):
+        for view in (values, *doubled):
+            yield tuple(tuple(value[row] for row in LAST) for value in view)
+
+
+LAST = (1, 2, 3, 0)
+"""The rows of a quaternion whose scalar is stored last."""
+
+RANDOM = (0.7310585786, 1.1752011936, 0.4812118251)
+"""The values of a symbol that a claim lacks."""
+
+UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
+"""Factors by which the base units are made smaller, to compare the units of formulas by their values."""
+
+
+def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
+    """Return whether a formula has another unit than a known formula, if its letters have the known symbols' units.
+
+    Both are evaluated before and after a change of the base units.
+    """
+    scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
+    if None in scales.values() or any(atom not in scales for atom in letters.atoms):
+        return False
+    scaled = Letters(
+        {atom: tuple(value * (scales[atom] or 1) for value in values) for atom, values in letters.atoms.items()},
+        letters.angles,
+        [
+            PointOfLetters(
+                {**point.symbols, **{str(atom.value): v[n] * (scales[atom] or 1) for atom, v in letters.atoms.items()
+                                     if atom.kind == "name"}},
+                {}, point.definitions,
+                rates={atom: v[n] * (scales[atom] or 1) for atom, v in letters.atoms.items() if atom.kind == "call"},
+            )
+            for n, point in enumerate(letters.points)
+        ],
+    )  # fmt: skip
+    ratios = []
+    for n in range(POINTS):
+        plain = {mine: letters.atoms.get(node, RANDOM)[n] for mine, node in nodes.items()}
+        changed = {mine: value * (scales[nodes[mine]] or 1) for mine, value in plain.items()}
+        pairs = []
+        for own, values in ((letters, plain), (scaled, changed)):
+            value = values_of(_tree(known), [PointOfLetters(values, {}, {})])
+            needed = value and _needed(named, known, value, Letters({}, {}, [own.points[n]]))
+            actual = values_of(named.formula, [own.points[n]])
+            if not needed or not actual or is_matrix(actual[0]) or not needed[0] or not actual[0]:
+                return False
+            pairs.append(actual[0] / needed[0])
+        ratios.append(pairs[0] / pairs[1])
+    return not all(abs(ratio - 1) <= 1e-6 for ratio in ratios)
+
+
+def _scale(unit: str | None) -> float | None:
+    """Return the factor by which a quantity with a unit changes if the base units change; None without a unit."""
+    if unit is None:
+        return None
+    powers = read_unit(unit.partition(",")[0])
+    return math.prod((UNITS.get(base, 1.0) ** float(power) for base, power in powers.items()), start=1.0)
+
+
+def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
+    if tree.kind == "name":
+        return nodes.get(str(tree.value), tree)
+    return Node(tree.kind, tree.value, tuple(_renamed(child, nodes) for child in tree.args))
+
+
+def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
+    """Return the values that a claim's formula should have if its quantity has the values ``target``; or None."""
+    function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
+    if function is None:
+        return None
+    try:
+        target = tuple(map(function, target))
+    except (ValueError, TypeError):
+        return None
+    if named.solve is None:
+        return None
+    values = []
+    for point, value in zip(letters.points, target, strict=True):
+        if is_matrix(value):
+            if named.side.kind not in ("name", "call"):
+                return None
+            values.append(value)
+            continue
+        name = named.name
+        rates = {node: value for _, node in walk(named.side) if _is_atom(node) and node.kind == "call"}
+        whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
+        try:
+            values.append(whole.value(named.side))
+        except UndefinedValue:
+            return None
+    return tuple(values)
+
+
+def _root(value: Any) -> float:
+    return math.sqrt(value)
+
+
+def _multiple_of_arc(factor: int, function: Callable[..., float]) -> Callable[[Any], float]:
+    return lambda value: factor * function(*(entries_of(value) if is_matrix(value) else [value]))
+
+
+_FUNCTIONS_OF_ENDINGS: dict[str, Callable[[Any], Any]] = {
+    "": lambda value: value, SQUARED: _root, ", acos": _multiple_of_arc(1, math.acos),
+    ", 2 acos": _multiple_of_arc(2, math.acos), ", asin": _multiple_of_arc(1, math.asin),
+    ", atan2": _multiple_of_arc(1, math.atan2), ", 2 atan2": _multiple_of_arc(2, math.atan2),
+}  # fmt: skip
+"""Ending of the name of a known formula -> the function of its value that is the quantity."""

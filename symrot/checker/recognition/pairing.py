@@ -1,0 +1,132 @@
+"""Renamings of the symbols of a known formula to the symbols of a claim, where the claim may have a fault.
+
+A fault can take one symbol out of a formula, or bring one in. So a renaming may leave out one symbol on each side. The
+letters, units, axes and angles of the names say which symbols may be the same quantity.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from functools import lru_cache
+from itertools import islice
+
+from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
+from symrot.checker.recognition.renaming import axes_of, is_consistent
+
+__all__ = ["absent_name", "renamings", "strangeness"]
+
+ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
+"""The letters that books use for angles."""
+
+MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmn]"}
+"""Unit -> letters that books use for it in long formulas, where other letters say what is meant."""
+
+INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
+"""The index of an axis at the end of a name."""
+
+ORDER = {"phi": "1", "theta": "2", "psi": "3"}
+"""Euler angle -> its index where all three have one letter, as theta_1, theta_2 and theta_3."""
+
+USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
+"""Name in known formulas -> the name that books use where it is the only quantity of its kind."""
+
+MOST_STEPS = 400
+"""The most partial renamings of one known formula that are tried."""
+MOST = 6
+"""The most renamings of one known formula that are returned."""
+
+
+def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
+    """Return renamings of the names of a known formula, the most similar ones first.
+
+    ``angles`` are those names of the claim that occur in sines and cosines.
+
+    A renaming gives each known name the name of a quantity of the claim, or None for one name that the claim lacks.
+    """
+    if abs(len(known) - len(own)) > 1:
+        return []
+    fitting = {name: [other for other in own if _fits(name, other, other in angles)] for name in known}
+    order = sorted(known, key=lambda name: (len(fitting[name]), name))
+    complete = []
+    for absent in (*([""] if len(known) <= len(own) else []), *order):  # the name that the claim lacks, or none
+        rest = [name for name in order if name != absent]
+        start: dict[str, str | None] = {absent: None} if absent else {}
+        search = islice(_extended(start, rest, fitting, len(own)), MOST_STEPS // (len(order) if absent else 1))
+        complete += [renaming for renaming in search if renaming is not None]
+    return sorted(complete, key=lambda renaming: (_moved(renaming), strangeness(renaming)))[:MOST]
+
+
+def _moved(renaming: dict[str, str | None]) -> int:
+    """Return the number of symbols to which a renaming gives another axis."""
+    pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
+    return sum(bool(mine and new and mine != new) for mine, new in pairs)
+
+
+def strangeness(renaming: dict[str, str | None]) -> int:
+    """Return how many names a renaming changes; a name that the claim lacks counts too."""
+    return sum(other is None or plain_name(other) != name for name, other in renaming.items())
+
+
+def _extended(
+    renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
+) -> Iterator[dict[str, str | None] | None]:
+    """Yield the complete renamings that extend a partial one, and None at each step, to count the steps."""
+    yield None
+    if not order:
+        used = sum(other is not None for other in renaming.values())
+        if count - used <= 1:
+            yield dict(renaming)
+        return
+    name, *rest = order
+    others = [other for other in fitting[name] if other not in renaming.values()]
+    same = [other for other in others if plain_name(other) == name]
+    for other in same or others:
+        pairs = [(mine, chosen) for mine, chosen in renaming.items() if chosen is not None]
+        if not is_consistent([*pairs, (name, other)]):
+            continue
+        yield from _extended({**renaming, name: other}, rest, fitting, count)
+
+
+@lru_cache(maxsize=20_000)
+def _fits(known: str, own: str, is_angle: bool) -> bool:
+    """Return whether the names of a claim's quantity and of a known formula's quantity may mean the same."""
+    name = plain_name(own)
+    if known == name:
+        return True
+    unit = UNIT_OF_NAME.get(known)
+    if re.match("[A-Z]{2}", name):
+        return False  # two letters without a sign between them
+    is_rate = own.startswith("diff(") or own.endswith("dot")
+    if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
+        return False
+    if is_angle:
+        return unit in ("rad", None)
+    pattern = MORE_LETTERS.get(unit or "", LETTERS.get(unit or ""))
+    if pattern is not None:
+        return re.fullmatch(pattern, name) is not None
+    conventional = unit_of(own)
+    return unit is None or conventional is None or conventional == unit
+
+
+def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
+    """Return a name for a quantity that a claim lacks, and whether the claim has similar names.
+
+    Omega_3 is similar to Omega_1 and Omega_2.
+    """
+    for mine, other in renaming.items():
+        if known in ORDER and mine in ORDER and other is not None and other[-1] == ORDER[mine]:
+            return other[:-1] + ORDER[known], True
+        if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
+            return known, True
+    axis = axes_of(known)
+    unit = UNIT_OF_NAME.get(known)
+    for mine, other in renaming.items():
+        name = plain_name(other or "")
+        index = INDEX.search(name)
+        if other is None or index is None or UNIT_OF_NAME.get(mine) != unit or len(axes_of(mine)) != len(axis):
+            continue
+        own, new = axes_of(mine), axes_of(name)
+        if axis and own == new:
+            letters = "0xyz" if index[0].isalpha() else "0123"
+            new_index = "".join(letters[place] for place in sorted(axis))
+            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1), True
+    return USUAL.get(known, known), False

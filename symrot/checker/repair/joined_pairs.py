@@ -1,0 +1,111 @@
+"""Pairs of edits that make a claim true together: a join of their effects instead of a trial of all pairs.
+
+At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
+So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
+factors multiply in the same way. Each single edit is evaluated once; a look-up gives the edits that complete it.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, islice
+
+from symrot.checker.repair.edits import Edit
+from symrot.checker.repair.entries import merged
+from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
+from symrot.checker.repair.points import UndefinedValue, entries_of
+
+__all__ = ["joined_pairs", "pair_of"]
+
+MOST_JOINED = 400
+"""The most pairs that are tried."""
+
+DIGITS = 8
+"""Digits, relative to the largest value, to which amounts are compared before a pair is tried."""
+
+Values = tuple[float, ...]
+
+
+def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
+    """Yield pairs of edits in different parts of a claim that make it true at the test points, the cheapest first."""
+    try:
+        sums, products = _differences(numeric, changes), _quotients(numeric, changes)
+    except UndefinedValue:  # the claim itself has no value at the point
+        return
+    pairs = chain(
+        _completing(sums, lambda value, own: value - own), _completing(products, lambda value, own: value / own)
+    )
+    costs = {pair: changes[pair[0]].cost + changes[pair[1]].cost for pair in pairs}
+    for first, second in islice(sorted(costs, key=lambda pair: (costs[pair], pair)), MOST_JOINED):
+        both = pair_of(numeric, changes[first], changes[second])
+        if both is not None and numeric.holds(both):
+            yield Candidate(costs[first, second], "two_faults", both)
+
+
+def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
+    """Return two edits as changes of a claim; None if they change the same part."""
+    if first.place != second.place:
+        return first, second
+    tree = merged(numeric.tree_at(first.place), first.edit, second.edit)
+    if tree is None:
+        return None
+    return (Change(first.place, Edit("two_faults", first.edit.cost + second.edit.cost, (), tree)),)
+
+
+Effects = tuple[Values, dict[int, Values]]
+"""The effect that a pair must have together, and the effect of each single edit by its number."""
+
+
+def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
+    """Return the differences of the sides at a point, and by how much each single edit reduces them."""
+    point = numeric.points[0]
+    whole = tuple(numeric.differences(point, ()))
+    effects: dict[int, Values] = {}
+    for number, change in enumerate(changes):
+        if not numeric.affordable():
+            break
+        try:
+            values = numeric.differences(point, (change,))
+        except UndefinedValue:
+            continue
+        if len(values) == len(whole):
+            effects[number] = tuple(before - after for before, after in zip(whole, values, strict=True))
+    return whole, effects
+
+
+def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
+    """Return the quotient of two scalar sides at a point, and the factor by which each edit of a side reduces it."""
+    point = numeric.points[0]
+    left, right = (entries_of(side) for side in numeric.sides(point, ()))
+    if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
+        return (), {}
+    whole = left[0] / right[0]
+    effects: dict[int, Values] = {}
+    for number, change in enumerate(changes):
+        if change.place not in SIDES or not numeric.affordable():
+            continue
+        try:
+            (above,), (below,) = (entries_of(side) for side in numeric.sides(point, (change,)))
+        except (UndefinedValue, ValueError):
+            continue
+        if above and below:
+            effects[number] = (whole * below / above,)
+    return (whole,), effects
+
+
+def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
+    """Yield pairs of edits that together have the whole effect; ``rest`` returns what one edit leaves to the other."""
+    whole, single = effects
+    scale = max(map(abs, whole), default=0.0)
+    if not scale:
+        return
+    table: dict[Values, list[int]] = {}
+    for number, own in single.items():
+        table.setdefault(_key(own, scale), []).append(number)
+    for number, own in single.items():
+        missing = tuple(rest(value, part) for value, part in zip(whole, own, strict=True))
+        for other in table.get(_key(missing, scale), ()):
+            if other > number:
+                yield number, other
+
+
+def _key(values: Values, scale: float) -> Values:
+    return tuple(round(value / scale, DIGITS) + 0.0 for value in values)

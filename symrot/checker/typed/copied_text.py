@@ -1,0 +1,89 @@
+"""Text around a formula that is copied from a page: the number of the equation, ``where`` clauses and ``and``."""
+
+import re
+from dataclasses import dataclass
+
+__all__ = ["Copied", "without_surroundings"]
+
+_NUMBER = re.compile(
+    r"(?:(?<=[,.;])|(?<=\s))\((?:\d+[.\-–:]\d+(?:[.\-–]\d+)?[a-z]?|[A-Z][.\-–]?\d+(?:\.\d+)?)\)[ \t.]*(?=\n|$)"
+    r"|(?:(?<=[,.;\t])|(?<=[ \t]{2})|(?<=[,.;] ))\(\d+[a-z]?\)[ \t.]*(?=\n|$)"
+)
+"""The number of an equation at the end of a line: ``(1.23)``, or ``(12)`` after a wide blank or a comma."""
+
+_REMARK = re.compile(r"\s\((?!alpha|beta|gamma|delta|theta|omega)[A-Za-z]{4,}(?:[ '-][A-Za-z]+)*\)[ \t.]*(?=\n|$)")
+"""Words in brackets at the end of a line, as ``(Steiner)``."""
+
+_WHERE = re.compile(r"[,;.]?\s*\b(?:where|wherein|in which|with)\b:?")
+_CLAUSE = re.compile(r"[^,;\n]+?(?=\s\band\b|[,;\n]|$)|\s\band\b")
+_PROSE = re.compile(r"\s(?:is|are|denotes?|being)\b.*", re.DOTALL)
+_AND = re.compile(r"(?<=\s)and(?=\s)")
+
+
+@dataclass(frozen=True)
+class Copied:
+    """A text with blanks in place of what surrounds its formulas, so that positions stay the same.
+
+    Attributes
+    ----------
+    text : str
+    where : int
+        The position at which the ``where`` clauses start; -1 if there are none.
+    numbers : tuple of str
+        The numbers of equations.
+    notes : tuple of str
+        Sentences about what is left out.
+    """
+
+    text: str
+    where: int = -1
+    numbers: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def without_surroundings(source: str, numbers: bool = True) -> Copied:
+    """Return a text without the numbers of its equations (if ``numbers``) and without clauses that hold no equation.
+
+    Examples
+    --------
+    >>> without_surroundings("F = m a, where m is the mass  (2.1)").text.rstrip()
+    'F = m a'
+    >>> without_surroundings("x = 2 (1.5)", numbers=False).text
+    'x = 2 (1.5)'
+    """
+    notes: list[str] = []
+    labels = [match[0].strip(" \t.") for match in _NUMBER.finditer(source)] if numbers else []
+    text = _NUMBER.sub(_blank, source) if numbers else source
+    notes += [f"{number} is read as the number of the equation" for number in labels]
+    notes += [f"{match[0].strip()!r} is not read" for match in _REMARK.finditer(text)]
+    text = _REMARK.sub(_blank, text)
+    where = -1
+    if (match := _WHERE.search(text)) and "=" in text[: match.start()]:
+        where = match.start()
+        rest, left_out = _clauses(text[match.end() :])
+        rest = rest if "=" in rest else " " * len(rest)
+        text = text[:where] + " " * (match.end() - where) + rest
+        notes += [f"{clause!r} is not read" for clause in left_out]
+    if text.count("=") > 1:
+        text = _AND.sub(" ; ", text)
+    return Copied(text, where, tuple(labels), tuple(notes))
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * len(match[0])
+
+
+def _clauses(text: str) -> tuple[str, list[str]]:
+    """Return clauses after ``where``, with blanks in place of clauses without an equation, and a list of those."""
+    left_out: list[str] = []
+
+    def equation_or_blank(match: re.Match[str]) -> str:
+        clause = match[0]
+        if "=" in clause:
+            short = _PROSE.sub("", clause)
+            return short.ljust(len(clause))
+        if clause.strip() not in ("", "and"):
+            left_out.append(clause.strip())
+        return ";".rjust(len(clause)) if clause.strip() == "and" else " " * len(clause)
+
+    return _CLAUSE.sub(equation_or_blank, text), left_out

@@ -1,0 +1,94 @@
+"""Functions of an argument that can be shortened: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
+
+The ring has one variable for the value of each function that it does not know. If two arguments are proven equal, so
+are the functions of them; so each argument is replaced by its normal form before the formula is read.
+"""
+
+from collections.abc import Sequence
+
+import sympy
+from sympy import Expr, Pow
+
+from symrot.exact.angles.inverse import INVERSE
+from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC
+from symrot.exact.inverse_sums import proof
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = ["proof_by_arguments", "with_plain_arguments"]
+
+FUNCTIONS = (*TRIGONOMETRIC, *REWRITTEN, *INVERSE, sympy.exp, sympy.log, sympy.Abs)
+
+MOST_LEVELS = 4
+"""The most levels of nested functions whose arguments are shortened, from the inside out."""
+
+MOST_COMPARED = 8
+"""The most arguments that are compared with each other."""
+
+
+def with_plain_arguments(
+    formulas: Sequence[Expr], hypotheses: Sequence[Expr] = (), domain: Sequence[Expr] = ()
+) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
+    """Return formulas in which the arguments of functions are in normal form, and the rings in which that is proven.
+
+    The formulas are equal to the given ones wherever no divisor of these rings is zero. The rings are empty if no
+    argument contains a function, a root or a divisor.
+    """
+    formulas, rings = list(formulas), []
+    for level in range(MOST_LEVELS):
+        nodes = [node for node in _functions(formulas) if _level(node) == level]
+        arguments = sorted({argument for node in nodes for argument in node.args}, key=sympy.default_sort_key)
+        if not any(map(_is_compound, arguments)):
+            continue
+        ring = FormulaRing(arguments, hypotheses, domain)
+        shorter, further = _shortest(ring, arguments)
+        values = {node: node.func(*(shorter[argument] for argument in node.args)) for node in nodes}
+        formulas = [formula.xreplace(values) for formula in formulas]
+        rings += [ring, *further]
+    return formulas, tuple(rings)
+
+
+def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
+    """Return the normal form of each argument, the same one for arguments that are proven equal, and further rings."""
+    shorter: dict[Expr, Expr] = {}
+    rings: list[FormulaRing] = []
+    for argument in arguments:
+        shorter[argument] = ring.expression(ring.ratio(argument))
+        for other in list(shorter)[:-1] if len(arguments) <= MOST_COMPARED else ():
+            further = proof(ring, ring.difference(argument, other).numerator)
+            if further is not None:
+                shorter[argument] = shorter[other]
+                rings += further
+                break
+    return shorter, tuple(rings)
+
+
+def proof_by_arguments(
+    left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
+) -> tuple[FormulaRing, ...] | None:
+    """Prove ``left = right`` with all arguments of functions in normal form; return the rings of the proof, or None."""
+    (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
+    if (shorter, other) == (left, right):
+        return None
+    ring = FormulaRing([shorter, other], hypotheses, domain)
+    further = proof(ring, ring.difference(shorter, other).numerator)
+    return None if further is None else (*rings, ring, *further)
+
+
+def _functions(formulas: Sequence[Expr]) -> set[Expr]:
+    return {node for formula in formulas for node in formula.atoms(*FUNCTIONS)}
+
+
+def _level(node: Expr) -> int:
+    """Return how many functions are inside each other in the arguments of a function."""
+    return max(map(_depth, node.args))
+
+
+def _depth(formula: Expr) -> int:
+    return isinstance(formula, FUNCTIONS) + max(map(_depth, formula.args), default=0)
+
+
+def _is_compound(argument: Expr) -> bool:
+    """Return whether an argument contains a function, a root or a divisor."""
+    return bool(argument.atoms(*FUNCTIONS)) or any(
+        not (power.exp.is_Integer and power.exp > 0) for power in argument.atoms(Pow)
+    )

@@ -1,0 +1,102 @@
+"""Proofs by cases of signs: ``|k| |m| = k m`` where the root ``sqrt(k m)`` is real.
+
+Wherever a formula with absolute values ``|f|`` has a value, each is ``f`` or ``-f``. A radicand that is a product of
+such f excludes half of the choices of signs. A numerator that is zero for all choices that remain is zero everywhere.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from itertools import product
+from math import prod
+
+from sympy import Abs
+from sympy.polys.rings import PolyElement
+
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = ["vanishes_for_all_signs"]
+
+MOST_SIGNS = 4
+"""The most absolute values in a numerator."""
+
+MOST_TERMS = 60
+"""Largest number of terms of a radicand that is factored."""
+
+Constraint = tuple[int, frozenset[int]]
+"""(sign, variables): the product of the signs of these variables is ``sign``."""
+
+
+def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
+    """Return whether a reduced numerator is zero for all signs that its absolute values can have.
+
+    Notes
+    -----
+    At every point there is a choice of signs s with ``|f| = s f`` that meets all constraints: the signs of the f that
+    are not zero, and for the others the signs that the constraints ask for.
+    """
+    insides = _insides(ring, numerator)
+    if not 1 <= len(insides) <= MOST_SIGNS:
+        return False
+    constraints = _consistent(ring, insides, list(_constraints(ring, insides)))
+    for choice in product((1, -1), repeat=len(insides)):
+        signs = dict(zip(insides, choice, strict=True))
+        if any(prod(signs[place] for place in places) != sign for sign, places in constraints):
+            continue
+        pairs = [(ring.ring.gens[place], signs[place] * inside) for place, inside in insides.items()]
+        if ring.reduce(numerator.compose(pairs)):
+            return False
+    return bool(constraints)
+
+
+def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement]:
+    """Return the absolute values in a numerator: number of the variable -> polynomial f of ``|f|``."""
+    used = {place for mono in numerator for place, power in enumerate(mono) if power}
+    absolute = {place: root for root, place in ring.roots.items() if isinstance(root.expression, Abs)}
+    insides = {}
+    for place in sorted(used & absolute.keys()):
+        with suppress(KeyError):  # f may contain a function that its square, which the ring has read, does not
+            ratio = ring.ratio(absolute[place].expression.args[0])
+            if not ratio.factors and ratio.constant == 1:
+                insides[place] = ratio.numerator
+    return insides
+
+
+def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
+    """Yield what the radicands of square roots say about the signs of polynomials: a radicand is never negative."""
+    radicands = [
+        ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
+    ]
+    for formula in ring.domain:
+        ratio = ring.ratio(formula)
+        divisors = [ring.ratios.factors[number] for number, power in ratio.factors if power % 2]
+        radicands.append(prod(divisors, start=ring.reduce(ratio.numerator)))
+    for poly in radicands:
+        if poly.is_ground or len(poly) > MOST_TERMS:
+            continue
+        constant, factors = poly.factor_list()
+        sign, places = (1 if constant > 0 else -1), set()
+        for factor, power in factors:
+            place = next((n for n, inside in insides.items() if inside in (factor, -factor)), None)
+            if place is None or power % 2 == 0:
+                break
+            sign *= 1 if insides[place] == factor else -1
+            places.add(place)
+        else:
+            yield sign, frozenset(places)
+
+
+def _consistent(
+    ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
+) -> list[Constraint]:
+    """Return constraints that some choice of signs meets at every point.
+
+    Where a polynomial of a constraint is zero, its own sign is free. So two constraints may share only polynomials that
+    are nowhere zero, because formulas divide by them.
+    """
+    divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
+    nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}
+    accepted: dict[frozenset[int], Constraint] = {}
+    for sign, places in constraints:
+        if all(places & others <= nonzero for others in accepted):
+            accepted.setdefault(places, (sign, places))
+    return list(accepted.values())

@@ -1,0 +1,7 @@
+"""The findings about the claims of four textbooks and courses: as a table, as data, and as the pages of errata."""
+
+from symrot.report.errata.entries import Survey, survey
+from symrot.report.errata.page import html, page
+from symrot.report.errata.table import facts, lines
+
+__all__ = ["Survey", "facts", "html", "lines", "page", "survey"]

@@ -1,0 +1,187 @@
+"""The entries of the errata: an error with its formulas, as printed and corrected, its reason, and its proof."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.tree import Node, number, sum_of
+from symrot.checker.textbook import Finding, findings
+from symrot.report.errata.typesetting import filled, latex, marked
+from symrot.textbook import DOCUMENTS, Document, Erratum, PrintedFormula, document, errata
+
+__all__ = ["Correction", "Entry", "Survey", "condition_words", "entries", "survey"]
+
+Survey = list[tuple[Document, list[Finding]]]
+
+
+def survey(
+    names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
+) -> Survey:
+    """Decide the claims of some textbooks and return the verdicts, with corrections of claims that do not hold."""
+    documents = []
+    for name in names:
+        source = document(name)
+        documents.append((source, list(findings(source, repair, progress))))
+    return documents
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A formula of a document in LaTeX: where it is, as printed, and as it should be; the latter may be empty."""
+
+    where: str
+    printed: str
+    corrected: str
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One error of a document.
+
+    Attributes
+    ----------
+    title, where, why : str
+        What it is about, its places, and the reason in words.
+    corrections : tuple of Correction
+    proof : str
+        One sentence: against what the formula was checked, and where it differs.
+    extracted : tuple of str
+        The lines of the document, as they were extracted.
+    """
+
+    title: str
+    where: str
+    why: str
+    corrections: tuple[Correction, ...]
+    proof: str
+    extracted: tuple[str, ...]
+
+
+def entries(findings_of_document: Sequence[Finding]) -> list[Entry]:
+    """Return the errors of a document, each once; an error that no erratum describes has its own entry."""
+    failing = {item.claim["id"]: item for item in findings_of_document if item.outcome == "fails"}
+    listed = [
+        _entry(erratum, [failing[formula.claim] for formula in erratum.formulas if formula.claim in failing])
+        for erratum in errata()
+        if any(formula.claim in failing for formula in erratum.formulas)
+    ]
+    described = {formula.claim for erratum in errata() for formula in erratum.formulas}
+    others = [
+        _entry(Erratum(name, f"{item.reason}.", (PrintedFormula(name, "@left@", "@left@", {}, {}),)), [item])
+        for name, item in failing.items()
+        if name not in described
+    ]
+    return [*listed, *others]
+
+
+def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
+    formulas = {formula.claim: formula for formula in erratum.formulas}
+    corrections = [
+        _correction(item, formulas[item.claim["id"]]) for item in items if formulas[item.claim["id"]].template
+    ]
+    places = dict.fromkeys(item.claim["where"] for item in items)
+    extracted = dict.fromkeys(item.claim["printed"] for item in items)
+    return Entry(
+        erratum.title,
+        ", ".join(places),
+        erratum.why,
+        tuple(corrections),
+        _proof(items[0], formulas[items[0].claim["id"]].letters),
+        tuple(extracted),
+    )
+
+
+def _correction(item: Finding, formula: PrintedFormula) -> Correction:
+    """Return a formula as printed and as corrected; nothing is corrected if no correction was found."""
+    where = item.claim["where"]
+    if not item.parts:
+        digits = {"printed": item.claim["printed_value"]}
+        right = f"\\boxed{{{item.right}}}" if item.right else ""
+        return Correction(where, _with_text(formula.template, digits),
+                          _with_text(formula.corrected, {"printed": right}) if right else "")  # fmt: skip
+    printed, corrected = dict(item.parts), dict(item.parts)
+    for place, tree in item.corrected.items():
+        printed[place], corrected[place] = marked(item.parts[place], tree)
+    functions = item.claim.get("functions", [])
+    return Correction(
+        where,
+        filled(formula.template, printed, formula.letters, functions),
+        filled(formula.corrected, corrected, formula.letters, functions) if item.corrected else "",
+    )
+
+
+def _with_text(template: str, texts: Mapping[str, str]) -> str:
+    for name, text in texts.items():
+        template = template.replace(f"@{name}@", text)
+    return template
+
+
+def _proof(item: Finding, letters: Mapping[str, str]) -> str:
+    """Return one sentence on how an error was proven."""
+    against = item.claim["against"]
+    example = _example(item, letters)
+    if not item.corrected:
+        return f"The printed formula differs from the reference ({against}){example}."
+    return (
+        f"The difference from the reference ({against}) is exactly zero for the corrected formula, and not for the "
+        f"printed one{example}."
+    )
+
+
+def _example(item: Finding, letters: Mapping[str, str]) -> str:
+    """Return the values of both sides at a point at which they differ, as the end of a sentence."""
+    witness = item.verdict.counterexample
+    if witness is None:
+        return ""
+    functions = item.claim.get("functions", [])
+    at = [
+        f"${_typeset(read_expression(name), letters, functions)} = {_typeset(read_expression(value))}$"
+        for name, value in witness.values.items()
+        if value != "0"
+    ]
+    rest = ["all other letters 0"] if 0 < len(at) < len(witness.values) else []
+    entry = f"in entry {witness.entry}, " if witness.entry else ""
+    values = f"`{witness.lhs}` against `{witness.rhs}`"
+    return f": for example, {entry}{values}" + (f" at {', '.join([*at, *rest])}" if at else "")
+
+
+# -- conditions --------------------------------------------------------------------------------------------------------
+
+WORDS = {
+    ("sin", "!="): "{} is no multiple of 180 degrees",
+    ("cos", "!="): "{} is no odd multiple of 90 degrees",
+    ("sin", ">="): "{} lies between 0 and 180 degrees",
+    ("cos", ">="): "{} lies between -90 and 90 degrees",
+}
+"""Function of an angle, and what must hold of it against zero -> the words of a book for it."""
+
+
+def condition_words(condition: str) -> str:
+    """Return a condition as a book would print it.
+
+    Examples
+    --------
+    >>> condition_words("sin(theta) != 0")
+    '$\\\\sin \\\\theta \\\\neq 0$: $\\\\theta$ is no multiple of 180 degrees'
+    """
+    sign, left, right = _without_negative_terms(read_relation(condition))
+    signs = {"!=": "\\neq", ">=": "\\ge", "<=": "\\le", "==": "="}
+    formula = f"${_typeset(left)} {signs.get(sign, sign)} {_typeset(right)}$"
+    words = WORDS.get((str(left.value), sign)) if left.kind == "call" and right == number(0) else None
+    if words:
+        return f"{formula}: {words.format(f'${_typeset(left.args[0])}$')}"
+    return formula
+
+
+def _without_negative_terms(relation: Relation) -> Relation:
+    """Return a relation of a sum to zero with the negative terms on the other side: ``b >= a`` for ``-a + b >= 0``."""
+    sign, left, right = relation
+    negative = [term.args[0] for term in left.args if term.kind == "neg"] if left.kind == "sum" else []
+    positive = [term for term in left.args if term.kind != "neg"]
+    if not negative or not positive or right != number(0):
+        return relation
+    return sign, sum_of(positive), sum_of(negative)
+
+
+def _typeset(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
+    return latex(node, letters, functions)

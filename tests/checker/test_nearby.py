@@ -1,0 +1,123 @@
+"""Formulas that are a single fault away from a known one: which part is at fault, and when nothing is claimed."""
+
+import pytest
+
+import symrot
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.tree import text
+from symrot.checker.recognition.pairing import absent_name, renamings
+from symrot.checker.recognition.parts import LACKING, Letters, PointOfLetters, is_absent, multiples, parts, variants
+from tests.campaigns.checker.printed import names_fault, offers
+
+FAULTS = (
+    ("T = ½ I ω", "exponent", "T = 1/2*I*ω^2"), ("H_G = I_G omega^2", "exponent", "H_G = I_G*omega"),
+    ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m*(a^2 + b^2)/12"),
+    ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m*(a^2 + b^2)/12"),
+    ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m/5*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)"),
+    ("p_phi = (I_1 cos^2 theta + I_3 sin^2 theta) phi' + I_3 psi' cos theta", "sin_cos_swap",
+     "p_phi = (I_1*sin(theta)^2 + I_3*cos(theta)^2)*phi' + I_3*psi'*cos(theta)"),
+    ("phi' = p + q sin phi + r cos phi tan theta", "factor", "phi' = p + q*sin(phi)*tan(theta) + r*cos(phi)*tan(theta)"),
+    ("T = 1/2 (I_1 w_1^2 + I_2 w_2^2 + I_3 w_2^2)", "wrong_symbol", "T = (I_1*w_1^2 + I_2*w_2^2 + I_3*w_3^2)/2"),
+    ("L_x = I_xx w_x + I_xy w_y + I_yz w_z", "wrong_symbol", "L_x = I_xx*w_x + I_xy*w_y + I_xz*w_z"),
+    ("e_0 = cos((phi + psi)/2) cos(theta)", "half_angle", "e_0 = cos((phi + psi)/2)*cos(theta/2)"),
+    ("w_1' = ((I_2 - I_3) w_2 w_3 + M_1)/I_2", "wrong_symbol", "w_1' = ((I_2 - I_3)*w_2*w_3 + M_1)/I_1"),
+    ("T = 2 pi sqrt(m g d/I)", "wrong_symbol", "T = 2*pi*sqrt(I/m/g/d)"),
+    ("Omega = M g/(I_3 omega_3)", "factor", "Omega = l*g*M/(I_3*omega_3)"),
+    ("theta = asin(q_0 q_2 - q_1 q_3)", "factor", "theta = asin(2*(q_0*q_2 - q_1*q_3))"),
+    ("sum M_x = -I_xz w_z' + I_yz w_z", "exponent", "M_x = -I_xz*w_z' + I_yz*w_z^2"),
+    ("M^2 = I_1^2 w_1^2 + I_2 w_2^2 + I_3^2 w_3^2", "exponent", "M^2 = I_1^2*w_1^2 + I_2^2*w_2^2 + I_3^2*w_3^2"),
+)  # fmt: skip
+
+
+@pytest.mark.thinned(4)
+@pytest.mark.parametrize(("claim", "code", "repaired"), FAULTS)
+def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", code)
+    assert repaired in [repair.text for repair in verdict.repairs]
+    assert symrot.check(repaired).verdict == "recognised"
+
+
+@pytest.mark.parametrize("claim", [
+    "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k", "v = omega r",
+    "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)", "a = omega^2 r",
+    "I = 1/12 m L^2 + m d^2", "I = m (a^2 + 4 b^2)/12", "I = m (R^2 + 5 a^2/4)",
+    "tau = -m g l sin(theta)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
+])  # fmt: skip
+def test_a_formula_that_may_mean_something_else_is_not_accused(claim):
+    """Few letters, another unit of the same form, or a letter of its own: nothing says that it has a fault."""
+    assert symrot.check(claim).verdict == "definition"
+
+
+@pytest.mark.parametrize(("wrong", "entry"), [
+    ("[[1, 0, 0], [0, cos(a), -sin(a)], [0, sin(a), sin(a)]]", "sin_cos_swap"),
+    ("[[cos(a), sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]]", "sign_of_term"),
+])  # fmt: skip
+def test_one_wrong_entry_of_a_matrix_is_repaired(wrong, entry):
+    verdict = symrot.check(f"R = {wrong}")
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", entry)
+
+
+def test_the_matrix_of_a_quaternion_may_have_any_letters():
+    matrix = ("[[1 - 2(y² + z²), 2(x y - z w), 2(x z + y w)], [2(x y + z w), 1 - 2(x² + z²), 2(y z - x w)], "
+              "[2(x z - y w), 2(y z + x w), 1 - 2(x² + y²)]]")  # fmt: skip
+    assert symrot.check(f"R = {matrix}").verdict == "recognised"
+
+
+def _letters(**values):
+    atoms = {read_expression(name): tuple(v) for name, v in values.items()}
+    places = [PointOfLetters({name: v[n] for name, v in values.items()}, {}, {}) for n in range(2)]
+    return Letters(atoms, {}, places)
+
+
+def test_a_part_should_have_the_value_that_makes_the_whole_right():
+    letters = _letters(m=(2.0, 3.0), a=(1.5, 0.7), b=(0.4, 1.1))
+    tree = read_expression("m*(a**2 - b)/12")
+    needed = tuple(m * (a**2 + b**2) / 12 for m, a, b in ((2.0, 1.5, 0.4), (3.0, 0.7, 1.1)))
+    values = {text(part.node): part.needed for part in parts(tree, letters.points, needed)}
+    assert values["b"] == pytest.approx((-(0.4**2), -(1.1**2)))
+    assert values["a**2"] == pytest.approx((1.5**2 + 0.4**2 + 0.4, 0.7**2 + 1.1**2 + 1.1))
+
+
+def test_a_multiple_and_an_absent_part_are_seen():
+    letters = _letters(a=(1.5, 0.7), b=(0.4, 1.1))
+    tree = read_expression("a - b")
+    negative = next(part for part in parts(tree, letters.points, (1.9, 1.8)) if text(part.node) == "b")
+    assert not is_absent(negative)
+    assert [(text(change.made), change.code) for change in multiples(negative)] == [("-b", "sign_of_term")]
+    doubled = next(part for part in parts(tree, letters.points, (0.7, -1.5)) if text(part.node) == "b")
+    assert [text(change.made) for change in multiples(doubled)] == ["2*b"]
+    (lone,) = [part for part in parts(tree, letters.points, (1.5, 0.7)) if is_absent(part)]
+    assert text(lone.node) == "-b"
+
+
+def test_variants_are_usual_faults_alone():
+    letters = _letters(a=(1.5, 0.7), b=(0.4, 1.1))
+    made = {text(variant.change.made) for variant in variants(read_expression("a"), "sum", letters)}
+    assert {"b", "a**2", "a*b", "a/b"} <= made
+    assert text(LACKING) not in made and "a" not in made
+
+
+def test_a_renaming_leaves_out_at_most_one_symbol_on_each_side():
+    known = ("A", "B", "C", "omega_1", "omega_2", "omega_3")
+    own = ("I_1", "I_2", "I_3", "Omega_1", "Omega_2")
+    first, *_ = renamings(known, own)
+    assert first == {"A": "I_1", "B": "I_2", "C": "I_3", "omega_1": "Omega_1", "omega_2": "Omega_2", "omega_3": None}
+    assert absent_name("omega_3", first) == ("Omega_3", True)
+    assert renamings(known, own[:4]) == []
+    assert absent_name("c_3", {"m": "m"}) == ("l", False)
+
+
+def test_units_and_axes_of_letters_limit_the_renamings():
+    assert renamings(("m", "R"), ("phi", "r")) == [{"m": None, "R": "r"}]
+    assert renamings(("R", "theta"), ("r", "a"), {"a"})[0] == {"R": "r", "theta": "a"}
+    assert all(r["omega_1"] != "I_1" for r in renamings(("A", "omega_1"), ("I_1", "w_1")))
+
+
+def test_the_campaign_compares_diagnoses_and_repairs_with_the_corpus():
+    assert names_fault("missing_square", "exponent") and not names_fault("sign", "factor")
+    assert names_fault("other", "factor") and not names_fault("other", "none")
+    assert offers(("T = I*omega^2/2",), r"T = \frac12 J\omega^2")
+    assert offers(("x = 1", "I_1*w' = M"), "w' = M/I_1")
+    assert not offers(("T = I*omega^2",), r"T = \frac12 I\omega^2")
+    assert not offers((), "T = 1")

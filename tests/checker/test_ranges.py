@@ -1,0 +1,73 @@
+"""Conditions as books write them: ranges of angles and symbols, nothing that holds everywhere or follows from another."""
+
+import pytest
+from sympy import Abs, cos, pi, sin, sqrt, symbols
+
+import symrot
+from symrot.checker.decide.ranges import follow, range_text
+
+x, y, a, k, m, theta = symbols("x y a k m theta", real=True)
+
+SIGNS = {
+    "0 <= x <= pi": [(x, ">= 0"), (pi - x, ">= 0")],
+    "-pi < x <= pi": [(x + pi, "> 0"), (pi - x, ">= 0")],
+    "-pi/4 < x < pi/4": [(2 * x + pi / 2, "> 0"), (pi / 2 - 2 * x, "> 0")],
+    "0 <= x - y <= pi": [(x - y, ">= 0"), (pi - x + y, ">= 0")],
+    "x >= y": [(2 * x - 2 * y, ">= 0")],
+    "k*m > 0": [(k / m, ">= 0"), (m / k, ">= 0"), (k, "!= 0"), (m, "!= 0")],
+    "-1 < x < 1": [((1 + x) / (1 - x), "> 0"), (1 - x, "!= 0")],
+    "x >= 1": [(x + 1, ">= 0"), (x - 1, ">= 0"), (x**2 - 1, ">= 0")],
+    "abs(x) >= 1": [(x**2 - 1, ">= 0")],
+    "-sqrt(2) <= x <= sqrt(2)": [(2 - x**2, ">= 0")],
+    "sin(x) >= 0": [(sin(x / 2) * cos(x / 2), ">= 0")],
+    "cos(theta) > 0 and a != 0": [(a**2 * cos(theta), "> 0")],
+    "x > 0 and y > 0": [(x, "> 0"), (y, "> 0"), (x * y, "> 0"), (x + y, "> 0"), (x + 1, "!= 0")],
+    "x > 2": [((x - 2) ** 3, "> 0"), (x, "!= 0")],
+    "-pi/2 < x < pi/2": [(x + pi / 2, "> 0"), (pi / 2 - x, "> 0"), (cos(x), "!= 0")],
+    "x < 0 and y != 0": [(-x * Abs(y), "> 0"), (-x, ">= 0")],
+    "": [
+        (x**2 + 1, "> 0"),
+        (1 - sin(x), ">= 0"),
+        (1 - cos(x) ** 2, ">= 0"),
+        (sqrt(x**2 + 1) - x, "> 0"),
+        (x**2 + x + 1, "!= 0"),
+    ],
+}
+
+
+@pytest.mark.parametrize(("text", "signs"), SIGNS.items(), ids=SIGNS)
+def test_conditions_are_written_as_a_book_writes_them(text, signs):
+    assert range_text(signs) == text
+
+
+@pytest.mark.parametrize(("claim", "condition"), [
+    ("(1 - x**2)/sqrt((x - 1)**2) == -1 - x", "x > 1"), ("tan(x/2) == sqrt((1 - cos(x))/(1 + cos(x)))", "sin(x) > 0"),
+    ("abs(x)*abs(y) == x*y", "x*y >= 0"), ("acos(1 - 2*x**2) == 2*asin(x)", "0 <= x <= 1"),
+    ("acos((trace(Rz(a)) - 1)/2) == a", "0 <= a <= pi"), ("sqrt((1 - cos(x))/2) == sin(x/2)", "sin(x/2) >= 0"),
+    ("sqrt(a**2 + 2*a*b + b**2) == a + b", "a + b >= 0"), ("asin(2*x*sqrt(1 - x**2)) == 2*asin(x)", None),
+    (r"\arccos(\cos\theta) = \theta", r"0 \leq \theta \leq \pi"), (r"\sqrt{x^2} = x", r"x \geq 0"),
+    ("sqrt(φ^2) = φ", "φ >= 0"), ("atan2(sin(b), sqrt(cos(b)**2)) == b", "-pi/2 <= b <= pi/2"),
+    ("atan2(abs(sin(b)), cos(b)) == b", "0 <= b <= pi"), ("√(x²) = x; √(y²) = y", "x >= 0 and y >= 0"),
+    ("sin(x/2) = ±√((1 - cos x)/2)", "sin(x/2) <= 0 for the lower sign"),
+])  # fmt: skip
+def test_a_conditional_claim_states_its_range_in_its_own_notation(claim, condition):
+    verdict = symrot.check(claim, repair=False)
+    assert verdict.verdict == "conditional"
+    assert condition in (None, *verdict.requires)
+
+
+@pytest.mark.parametrize(("claim", "conditions"), [
+    ("sqrt((1 - x)/(1 + x))*sqrt(1 - x**2) == 1 - x", ("-1 < x <= 1",)), ("sqrt(k/m)*sqrt(m/k) == 1", ("k*m > 0",)),
+    ("log((x + 1)/(1 - x)) == -log((1 - x)/(x + 1))", ("-1 < x < 1",)), ("asinh(-x) == -asinh(x)", ()),
+])  # fmt: skip
+def test_a_condition_that_the_domain_grants_is_no_condition(claim, conditions):
+    verdict = symrot.check(claim, repair=False)
+    assert (verdict.verdict, verdict.conditions) == ("true", conditions)
+
+
+def test_a_condition_follows_only_from_what_grants_it():
+    assert follow([(x + 1, ">= 0")], [(x, ">= 0")])
+    assert not follow([(x - 1, ">= 0")], [(x, ">= 0")])
+    assert not follow([(x * y, ">= 0")], [(x, ">= 0")])
+    assert not follow([(x, "> 0")], [(x, ">= 0")])
+    assert not follow([(x, ">= 0")], [(x**2 * y, ">= 0"), (y, "> 0")])
