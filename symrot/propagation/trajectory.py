@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from pickle import PicklingError
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,11 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 import symrot
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.planning.plan import Plan
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.stepping import Stats
-from symrot.scene.scene import Scene
+from symrot.scene.scene import Initial, Scene
 
 __all__ = ["Invariant", "Trajectory"]
 
@@ -53,8 +53,18 @@ class Invariant(NamedTuple):
     drift: float
 
 
+class MotionSource(Protocol):
+    """A propagator, as far as a trajectory needs it."""
+
+    def motion_from(self, initial: Initial) -> Motion:
+        """Return the motion from an initial state."""
+
+
 class Trajectory:
     """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
+
+    A trajectory can be copied and pickled. Its samples travel with it; for anything else, such as :meth:`sol`, the copy
+    prepares the motion again from the scene and the cache.
 
     Attributes
     ----------
@@ -64,6 +74,12 @@ class Trajectory:
         The integrated states, in the order of ``states``; same layout as in solve_ivp.
     method, stats : str, Stats
         The method, and the cost of the motion: steps, evaluations, seconds.
+    plan : Plan
+        The plan of the motion, which says which states are integrated and why the others are not.
+    tolerance : float
+        Error of the trajectory to aim for.
+    has_external_torque : bool
+        Whether a torque without a formula acted: a function, or a table of samples.
     status, message, success : int, str, bool
         As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
         PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
@@ -92,8 +108,10 @@ class Trajectory:
         stats: Stats,
         message: str,
         events: EventResult | None = None,
+        propagator: "MotionSource | None" = None,
     ) -> None:
-        self._motion, self._parts = motion, states
+        self._motion, self._parts, self._propagator = motion, states, propagator
+        self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.status, self.warnings = 0, motion.setup.warnings
         self.t_events, self.y_events, self.event_kinds = None, None, None
@@ -101,11 +119,22 @@ class Trajectory:
             self.status, self.warnings = int(events.ended), (*self.warnings, *events.warnings)
             self.t_events, self.y_events, self.event_kinds = events.t_events, events.y_events, events.kinds
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the samples and the propagator; a copy prepares the motion again if it needs more than the samples."""
+        if self._propagator is None:
+            raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
+        return {name: value for name, value in self.__dict__.items() if name not in ("_motion", "_solution")}
+
+    @cached_property
+    def _motion(self) -> Motion:
+        assert self._propagator is not None
+        return self._propagator.motion_from(self.scene.initial)
+
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
-        name = self._motion.plan.scene.name
+        name = self.scene.name
         return f"<Trajectory of {name}: {len(self.t)} samples, {self.method}, {self.stats.accepted} steps>"
 
     @property
@@ -114,24 +143,14 @@ class Trajectory:
         return self.status >= 0
 
     @property
-    def plan(self) -> Plan:
-        """The plan of the motion, which says which states are integrated and why the others are not."""
-        return self._motion.plan
-
-    @property
     def scene(self) -> Scene:
         """The scene of the motion, with the initial state of this trajectory."""
-        return self._motion.plan.scene
-
-    @property
-    def has_external_torque(self) -> bool:
-        """Whether a torque without a formula acted: a function, or a table of samples."""
-        return self._motion.has_external_torque
+        return self.plan.scene
 
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the integrated states, such as omega_1 and q0, in the order of ``y``."""
-        return self._motion.plan.states
+        return self.plan.states
 
     @cached_property
     def _states(self) -> Floats:
@@ -145,12 +164,15 @@ class Trajectory:
 
     def _evaluate(self, *names: str) -> Floats:
         """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel."""
+        columns = [name.removesuffix(" of t") for name in names]
+        if set(columns) <= set(self.states):
+            return self._states[:, [self.states.index(name) for name in columns]]
         return self._motion.evaluate(self.t, self._states, names)
 
     @property
     def has_attitude(self) -> bool:
         """Whether the attitude was computed; the plan leaves it out if neither a torque nor the output needs it."""
-        return self._motion.plan.structure.attitude
+        return self.plan.structure.attitude
 
     def _need_attitude(self) -> None:
         if not self.has_attitude:
