@@ -1,6 +1,6 @@
 """Trajectories: the states of a motion at the sample times, and quantities that are computed from them on first use."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
 from pickle import PicklingError
@@ -11,10 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 import symrot
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.kinematics import conversions
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
+from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
+from symrot.results.labels import About, Labelled, about, labelled
+from symrot.results.samples import Samples
 from symrot.scene.scene import Initial, Scene
 
 __all__ = ["Invariant", "Trajectory"]
@@ -60,7 +64,7 @@ class MotionSource(Protocol):
         """Return the motion from an initial state."""
 
 
-class Trajectory:
+class Trajectory(Samples):
     """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
 
     A trajectory can be copied and pickled. Its samples travel with it; for anything else, such as :meth:`sol`, the copy
@@ -88,6 +92,8 @@ class Trajectory:
         takes place if its formula comes nearer to zero than the error of the motion.
     t_events, y_events : list of arrays or None
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
+    events : tuple of Event, or None
+        The requested events. :attr:`at_events` has a trajectory of the samples at each of them.
     event_kinds : list of lists of str, or None
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
@@ -114,16 +120,17 @@ class Trajectory:
         self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.status, self.warnings = 0, motion.setup.warnings
-        self.t_events, self.y_events, self.event_kinds = None, None, None
+        self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
         if events is not None:
             self.status, self.warnings = int(events.ended), (*self.warnings, *events.warnings)
             self.t_events, self.y_events, self.event_kinds = events.t_events, events.y_events, events.kinds
+            self.events = events.events
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the samples and the propagator; a copy prepares the motion again if it needs more than the samples."""
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
-        return {name: value for name, value in self.__dict__.items() if name not in ("_motion", "_solution")}
+        return {name: value for name, value in self.__dict__.items() if name not in ("_motion", "_path", "_solution")}
 
     @cached_property
     def _motion(self) -> Motion:
@@ -197,42 +204,6 @@ class Trajectory:
         return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property
-    def dcm(self) -> Floats:
-        """The attitude as direction cosine matrices ``dcm_sb``, shape (n, 3, 3)."""
-        return conversions.quaternion_to_dcm(self.quaternion)
-
-    def euler(self, sequence: str, degrees: bool = False) -> Floats:
-        """Return Euler angles in order of application, shape (n, 3), rad.
-
-        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
-        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
-        """
-        return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
-
-    def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (n,)."""
-        return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
-
-    def _to_space(self, vectors_b: Floats) -> Floats:
-        vectors_s: Floats = np.einsum("nij,nj->ni", self.dcm, vectors_b)
-        return vectors_s
-
-    @cached_property
-    def omega_space(self) -> Floats:
-        """Angular velocity, space components, rad/s, shape (n, 3)."""
-        return self._to_space(self.omega)
-
-    @property
-    def polhode(self) -> Floats:
-        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
-        return self.omega
-
-    @property
-    def herpolhode(self) -> Floats:
-        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
-        return self.omega_space
-
-    @cached_property
     def angular_momentum_body(self) -> Floats:
         """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (n, 3)."""
         return self._evaluate("momentum_1", "momentum_2", "momentum_3")
@@ -293,6 +264,94 @@ class Trajectory:
             return float(np.max(np.abs(values)))
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
+    def labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+        return labelled(self, quantities)
+
+    @property
+    def about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+        return about(self)
+
+    @cached_property
+    def rotation(self) -> Any:
+        """The attitude as a :class:`scipy.spatial.transform.Rotation` of n rotations, from body to space."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_quat(self.quaternion[:, [1, 2, 3, 0]])
+
+    def at(self, t: ArrayLike) -> "Trajectory":
+        """Return the trajectory at other times of the span, from the dense solution.
+
+        Parameters
+        ----------
+        t : float or array, shape (m,)
+            Times, s, between the first and the last time of the motion.
+
+        Returns
+        -------
+        Trajectory
+            The m samples, with all quantities. It has no events.
+
+        Raises
+        ------
+        InputError
+            If a time is not finite or lies outside the motion.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.propagate("t_handle").at(0.5).omega.shape
+        (1, 3)
+        """
+        times = real_array(t, "t", "times in s", ndmin=1)
+        if times.ndim != 1 or not np.isfinite(times).all():
+            raise InputError(f"t: expected finite times in s, shape (m,), got {number.show(t)}")
+        if len(times) and not (self._span[0] <= times.min() and times.max() <= self._span[1]):
+            low, high = self._span
+            raise InputError(f"t: expected times from {low!r} to {high!r} s, where the motion is known, got {t!r}")
+        return self._sampled(times, self._path(times))
+
+    def resample(self, times: ArrayLike | int) -> "Trajectory":
+        """Return the trajectory at the given times, or at a number of evenly spaced times of its span.
+
+        Parameters
+        ----------
+        times : int or array, shape (m,)
+            The number of samples, 2 or more, or their times, s, as for :meth:`at`.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.propagate("t_handle").resample(5).t.tolist()
+        [0.0, 3.0, 6.0, 9.0, 12.0]
+        """
+        if isinstance(times, bool) or not isinstance(times, int | np.integer):
+            return self.at(times)
+        if times < 2 or not len(self):
+            raise InputError(f"times: expected 2 samples or more of a motion that has samples, got {times}")
+        return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
+
+    @cached_property
+    def at_events(self) -> "list[Trajectory]":
+        """For each requested event, the trajectory at the times of the event; empty if none was requested."""
+        pairs = zip(self.t_events or (), self.y_events or (), strict=True)
+        return [self._sampled(t, states) for t, states in pairs]
+
+    def _sampled(self, t: Floats, states: Floats) -> "Trajectory":
+        other = Trajectory(self._motion, t, states, self.method, self.stats, self.message, propagator=self._propagator)
+        other.warnings = self.warnings
+        return other
+
+    @cached_property
+    def _span(self) -> tuple[float, float]:
+        ends = float(self.scene.span.start), *self.t.tolist()
+        return min(ends), max(ends)
+
+    @cached_property
+    def _path(self) -> Callable[[Floats], Floats]:
+        return self._motion.path(self.t)
+
     def sol(self, t: ArrayLike) -> Floats:
         """Return omega and quaternion at any m times of the span, shape (7, m), as ``sol`` of solve_ivp does.
 
@@ -303,7 +362,7 @@ class Trajectory:
 
     @cached_property
     def _solution(self) -> Callable[[ArrayLike], Floats]:
-        return self._motion.solution(self.t, self.has_attitude)
+        return self._motion.solution(self._path, self.has_attitude)
 
     def show(self, path: str | Path | None = None) -> Path:
         """Write the motion as one offline page of HTML that plays it; see :func:`symrot.show`.

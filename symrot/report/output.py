@@ -12,8 +12,8 @@ import numpy as np
 
 from symrot import __version__, conventions
 from symrot.files.writing import write
-from symrot.report.labels import LOCK, Labelled, labelled
 from symrot.report.layout import columns, exact, one_line
+from symrot.results.labels import LOCK, Labelled, labelled
 
 if TYPE_CHECKING:
     from symrot.propagation.trajectory import Trajectory

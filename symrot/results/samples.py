@@ -1,0 +1,123 @@
+"""Samples of a motion as other packages take them: rotations of SciPy, data frames of pandas, data sets of xarray."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.kinematics import conversions
+from symrot.results import tables
+from symrot.results.labels import About, Labelled
+
+__all__ = ["Samples"]
+
+Floats = NDArray[np.float64]
+
+
+class Samples(ABC):
+    """The angular velocity and the attitude of a motion at times ``t``, and quantities that follow from them alone.
+
+    The methods compute with samples of any shape: (m,) for one motion, (n, m) for n motions.
+    """
+
+    t: Floats
+
+    @property
+    @abstractmethod
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (..., 3)."""
+
+    @property
+    @abstractmethod
+    def quaternion(self) -> Floats:
+        """Attitude as unit quaternions, scalar first, body to space, shape (..., 4)."""
+
+    @abstractmethod
+    def labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+
+    @property
+    @abstractmethod
+    def about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+
+    @cached_property
+    def dcm(self) -> Floats:
+        """The attitude as direction cosine matrices ``dcm_sb``, shape (..., 3, 3)."""
+        return conversions.quaternion_to_dcm(self.quaternion)
+
+    def euler(self, sequence: str, degrees: bool = False) -> Floats:
+        """Return Euler angles in order of application, shape (..., 3), rad.
+
+        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
+        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
+        """
+        return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
+
+    def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
+        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (...)."""
+        return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
+
+    def _to_space(self, vectors_b: Floats) -> Floats:
+        vectors_s: Floats = np.einsum("...ij,...j->...i", self.dcm, vectors_b)
+        return vectors_s
+
+    @cached_property
+    def omega_space(self) -> Floats:
+        """Angular velocity, space components, rad/s, shape (..., 3)."""
+        return self._to_space(self.omega)
+
+    @property
+    def polhode(self) -> Floats:
+        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
+        return self.omega
+
+    @property
+    def herpolhode(self) -> Floats:
+        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
+        return self.omega_space
+
+    def to_dataframe(self, quantities: Sequence[str] | None = None) -> Any:
+        """Return the samples as a pandas DataFrame: one row for each sample, one column for each component.
+
+        Parameters
+        ----------
+        quantities : sequence of str, optional
+            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The index is ``t``, s. ``attrs["units"]``, ``attrs["frames"]`` and ``attrs["meanings"]`` describe the
+            columns.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
+        """
+        return tables.dataframe(self.labelled(quantities), self.about)
+
+    def to_xarray(self, quantities: Sequence[str] | None = None) -> Any:
+        """Return the samples as an xarray Dataset: one variable for each quantity.
+
+        Parameters
+        ----------
+        quantities : sequence of str, optional
+            As for :meth:`to_dataframe`.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``. Each variable has the
+            attributes ``units``, ``long_name`` and ``frame``.
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
+        """
+        return tables.dataset(self.labelled(quantities), self.about)
