@@ -51,6 +51,8 @@ _NAMES_OF_MODULES = {
     "propagation.propagator": ("Propagator",),
     "propagation.steppers.stepping": ("Stats",),
     "propagation.trajectory": ("Invariant", "Trajectory"),
+    "report.output": ("save",),
+    "results.saved": ("SavedTrajectory", "load"),
     "viewer.show": ("in_notebook", "show"),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}

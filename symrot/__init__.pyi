@@ -27,6 +27,8 @@ from symrot.propagation.propagate import propagate, propagator
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Invariant, Trajectory
+from symrot.report.output import save
+from symrot.results.saved import SavedTrajectory, load
 from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
 from symrot.viewer.show import in_notebook, show
 from symrot.workshop.certification import (
@@ -79,6 +81,7 @@ __all__ = [
     "Repair",
     "RoundingBounds",
     "RuleOutcome",
+    "SavedTrajectory",
     "Scene",
     "SceneKernel",
     "SingularSet",
@@ -108,6 +111,7 @@ __all__ = [
     "in_notebook",
     "kernel_names",
     "largest_box",
+    "load",
     "load_scene",
     "normal_form",
     "plan",
@@ -118,6 +122,7 @@ __all__ = [
     "quaternion_rates",
     "quaternion_to_dcm",
     "rate_jacobian",
+    "save",
     "shipped_scenes",
     "show",
     "singularity_dossier",

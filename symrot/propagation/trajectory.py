@@ -264,12 +264,12 @@ class Trajectory(Samples):
             return float(np.max(np.abs(values)))
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
-    def labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
         return labelled(self, quantities)
 
     @property
-    def about(self) -> About:
+    def _about(self) -> About:
         """The origin of the samples: scene, method and tolerance."""
         return about(self)
 
@@ -363,6 +363,17 @@ class Trajectory(Samples):
     @cached_property
     def _solution(self) -> Callable[[ArrayLike], Floats]:
         return self._motion.solution(self._path, self.has_attitude)
+
+    def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
+        """Write the samples with labels and events to a file, which :func:`symrot.load` reads; see :func:`symrot.save`.
+
+        ``quantities`` are the names of the quantities to write; default: the output quantities of the scene, the
+        angular velocity and, if it was computed, the attitude.
+        """
+        if quantities is None:
+            present = ("omega", "quaternion") if self.has_attitude else ("omega",)
+            quantities = tuple(dict.fromkeys((*present, *self.scene.output.quantities)))
+        return symrot.save(self, path, quantities)
 
     def show(self, path: str | Path | None = None) -> Path:
         """Write the motion as one offline page of HTML that plays it; see :func:`symrot.show`.

@@ -71,6 +71,11 @@ def about(trajectory: Any) -> About:
     return About(scene.name, scene.title, scene.source, trajectory.method, trajectory.tolerance)
 
 
+def event_array(number: int, quantity: str) -> str:
+    """Return the name of an array in a file: a quantity at the times of one event, the first of which has number 1."""
+    return f"event_{number}_{quantity}"
+
+
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
     """Return the time and the named quantities of a trajectory, by default its output, each with its labels.
 

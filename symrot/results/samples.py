@@ -36,12 +36,12 @@ class Samples(ABC):
         """Attitude as unit quaternions, scalar first, body to space, shape (..., 4)."""
 
     @abstractmethod
-    def labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
 
     @property
     @abstractmethod
-    def about(self) -> About:
+    def _about(self) -> About:
         """The origin of the samples: scene, method and tolerance."""
 
     @cached_property
@@ -99,7 +99,7 @@ class Samples(ABC):
         InputError
             If pandas is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
         """
-        return tables.dataframe(self.labelled(quantities), self.about)
+        return tables.dataframe(self._labelled(quantities), self._about)
 
     def to_xarray(self, quantities: Sequence[str] | None = None) -> Any:
         """Return the samples as an xarray Dataset: one variable for each quantity.
@@ -120,4 +120,4 @@ class Samples(ABC):
         InputError
             If xarray is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
         """
-        return tables.dataset(self.labelled(quantities), self.about)
+        return tables.dataset(self._labelled(quantities), self._about)
