@@ -52,6 +52,7 @@ _NAMES_OF_MODULES = {
     "propagation.steppers.stepping": ("Stats",),
     "propagation.trajectory": ("Invariant", "Trajectory"),
     "report.output": ("save",),
+    "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
     "viewer.show": ("in_notebook", "show"),
 }

@@ -28,6 +28,7 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.report.output import save
+from symrot.report.plot import plot
 from symrot.results.saved import SavedTrajectory, load
 from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
 from symrot.viewer.show import in_notebook, show
@@ -115,6 +116,7 @@ __all__ = [
     "load_scene",
     "normal_form",
     "plan",
+    "plot",
     "propagate",
     "propagate_ensemble",
     "propagator",

@@ -364,6 +364,13 @@ class Trajectory(Samples):
     def _solution(self) -> Callable[[ArrayLike], Floats]:
         return self._motion.solution(self._path, self.has_attitude)
 
+    def plot(self, ax: Any = None, panel: str = "rates") -> Any:
+        """Draw one panel of the figure into axes of matplotlib, and return the axes; see :func:`symrot.plot`.
+
+        ``panel`` is ``"rates"``, ``"attitude"``, ``"drift"``, ``"body"`` or ``"space"``.
+        """
+        return symrot.plot(self, ax, panel)
+
     def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
         """Write the samples with labels and events to a file, which :func:`symrot.load` reads; see :func:`symrot.save`.
 
