@@ -32,7 +32,7 @@ _NAMES_OF_MODULES = {
     "planning.plan": ("Plan",),
     "planning.rules": ("RuleOutcome",),
     "planning.scene_kernel": ("SceneKernel",),
-    "ensemble.ensemble": ("Ensemble", "EnsembleStats", "propagate_ensemble"),
+    "ensemble.ensemble": ("Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"),
     "workshop.certification": (
         "Audit",
         "Certificate",

@@ -7,7 +7,7 @@ from symrot.checker.verdict import Diagnosis, Dimensions, Identification, Repair
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import Structure
-from symrot.ensemble.ensemble import Ensemble, EnsembleStats, propagate_ensemble
+from symrot.ensemble.ensemble import Ensemble, EnsembleMember, EnsembleStats, propagate_ensemble
 from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Counterexample
@@ -61,6 +61,7 @@ __all__ = [
     "Dimensions",
     "Emitted",
     "Ensemble",
+    "EnsembleMember",
     "EnsembleStats",
     "EulerRateMatrix",
     "Event",

@@ -17,13 +17,16 @@ from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
-from symrot.results.labels import About, Labelled, about, labelled
-from symrot.results.samples import Samples
+from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Initial, Scene
 
 __all__ = ["Invariant", "Trajectory"]
 
 Floats = NDArray[np.float64]
+_RECOMPUTED = (
+    "_motion", "_path", "_solution", "_states", "at_events", "dcm", "omega", "omega_space", "quaternion", "rotation",
+)  # fmt: skip
+"""Attributes that a copy of a trajectory computes again from the states and the propagator."""
 
 
 class Invariant(NamedTuple):
@@ -64,7 +67,7 @@ class MotionSource(Protocol):
         """Return the motion from an initial state."""
 
 
-class Trajectory(Samples):
+class Trajectory(MotionSamples):
     """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
 
     A trajectory can be copied and pickled. Its samples travel with it; for anything else, such as :meth:`sol`, the copy
@@ -130,7 +133,7 @@ class Trajectory(Samples):
         """Return the samples and the propagator; a copy prepares the motion again if it needs more than the samples."""
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
-        return {name: value for name, value in self.__dict__.items() if name not in ("_motion", "_path", "_solution")}
+        return {name: value for name, value in self.__dict__.items() if name not in _RECOMPUTED}
 
     @cached_property
     def _motion(self) -> Motion:
@@ -204,37 +207,6 @@ class Trajectory(Samples):
         return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property
-    def angular_momentum_body(self) -> Floats:
-        """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (n, 3)."""
-        return self._evaluate("momentum_1", "momentum_2", "momentum_3")
-
-    @cached_property
-    def angular_momentum_space(self) -> Floats:
-        """Angular momentum, including that of a rotor, space components, kg m^2/s, shape (n, 3)."""
-        return self._to_space(self.angular_momentum_body)
-
-    @cached_property
-    def kinetic_energy(self) -> Floats:
-        """Kinetic energy in J, shape (n,)."""
-        return self._evaluate("kinetic_energy")[:, 0]
-
-    @cached_property
-    def energy(self) -> Floats:
-        """Kinetic energy plus the potential energy of all torques that have a potential, in J, shape (n,)."""
-        return self._evaluate("energy")[:, 0]
-
-    @property
-    def axis_number(self) -> int:
-        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
-        principal = self.scene.body.principal
-        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
-
-    @cached_property
-    def axis(self) -> Floats:
-        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (n, 3)."""
-        return self.dcm[:, :, self.axis_number]
-
-    @cached_property
     def invariants(self) -> list[Invariant]:
         """The conserved quantities along the trajectory; their conservation was proven when the kernel was derived."""
         invariants = []
@@ -263,22 +235,6 @@ class Trajectory(Samples):
         if name.startswith("spin"):
             return float(np.max(np.abs(values)))
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
-
-    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
-        return labelled(self, quantities)
-
-    @property
-    def _about(self) -> About:
-        """The origin of the samples: scene, method and tolerance."""
-        return about(self)
-
-    @cached_property
-    def rotation(self) -> Any:
-        """The attitude as a :class:`scipy.spatial.transform.Rotation` of n rotations, from body to space."""
-        from scipy.spatial.transform import Rotation
-
-        return Rotation.from_quat(self.quaternion[:, [1, 2, 3, 0]])
 
     def at(self, t: ArrayLike) -> "Trajectory":
         """Return the trajectory at other times of the span, from the dense solution.
@@ -392,13 +348,3 @@ class Trajectory(Samples):
     def _repr_html_(self) -> str:
         """Return the page of the motion in a frame, as a notebook shows it."""
         return symrot.in_notebook(self)
-
-    def quantity(self, name: str) -> Floats:
-        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
-        if name == "euler":
-            output = self.scene.output
-            if output.sequence is None:
-                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
-            return self.euler(output.sequence, degrees=output.degrees)
-        value: Floats = getattr(self, name)
-        return value

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.results import tables
-from symrot.results.labels import About, Labelled
+from symrot.results.labels import About, Labelled, about, labelled
+from symrot.scene.scene import Scene
 
-__all__ = ["Samples"]
+__all__ = ["MotionSamples", "Samples"]
 
 Floats = NDArray[np.float64]
 
@@ -80,6 +82,13 @@ class Samples(ABC):
         """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
         return self.omega_space
 
+    @cached_property
+    def rotation(self) -> Any:
+        """The attitudes as a ``scipy.spatial.transform.Rotation`` from body to space; n motions one after another."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_quat(self.quaternion.reshape(-1, 4)[:, [1, 2, 3, 0]])
+
     def to_dataframe(self, quantities: Sequence[str] | None = None) -> Any:
         """Return the samples as a pandas DataFrame: one row for each sample, one column for each component.
 
@@ -121,3 +130,66 @@ class Samples(ABC):
             If xarray is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
         """
         return tables.dataset(self._labelled(quantities), self._about)
+
+
+class MotionSamples(Samples):
+    """Samples of a motion whose scene is known, with the quantities that its kernel computes."""
+
+    @property
+    @abstractmethod
+    def scene(self) -> Scene:
+        """The scene of the motion."""
+
+    @abstractmethod
+    def _evaluate(self, *names: str) -> Floats:
+        """Return the named output quantities of the kernel at the samples, shape (..., len(names))."""
+
+    @cached_property
+    def angular_momentum_body(self) -> Floats:
+        """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (..., 3)."""
+        return self._evaluate("momentum_1", "momentum_2", "momentum_3")
+
+    @cached_property
+    def angular_momentum_space(self) -> Floats:
+        """Angular momentum, including that of a rotor, space components, kg m^2/s, shape (..., 3)."""
+        return self._to_space(self.angular_momentum_body)
+
+    @cached_property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy in J, shape (...)."""
+        return self._evaluate("kinetic_energy")[..., 0]
+
+    @cached_property
+    def energy(self) -> Floats:
+        """Kinetic energy plus the potential energy of all torques that have a potential, in J, shape (...)."""
+        return self._evaluate("energy")[..., 0]
+
+    @property
+    def axis_number(self) -> int:
+        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
+        principal = self.scene.body.principal
+        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
+
+    @cached_property
+    def axis(self) -> Floats:
+        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (..., 3)."""
+        return self.dcm[..., self.axis_number]
+
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+        return labelled(self, quantities)
+
+    @property
+    def _about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+        return about(self)
+
+    def quantity(self, name: str) -> Floats:
+        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
+        if name == "euler":
+            output = self.scene.output
+            if output.sequence is None:
+                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
+            return self.euler(output.sequence, degrees=output.degrees)
+        value: Floats = getattr(self, name)
+        return value

@@ -115,6 +115,15 @@ def test_a_pickled_propagator_works_in_a_fresh_process_without_sympy(tmp_path):
         assert (done.stdout.strip(), done.stderr) == ("False", "")
 
 
+@pytest.mark.parametrize("method", ["exact", "taylor"])
+def test_a_pickle_of_a_trajectory_holds_its_samples_once(method):
+    trajectory = PROPAGATORS[method]()(np.linspace(0.0, 1.0, 5001))
+    size = len(pickle.dumps(trajectory))
+    assert trajectory.y.size and trajectory.omega.size and trajectory.dcm.size and len(trajectory.rotation) == 5001
+    assert size < trajectory.y.nbytes + trajectory.t.nbytes + 8000
+    assert len(pickle.dumps(trajectory)) < size + 8000
+
+
 def test_samples_of_a_pickled_trajectory_need_no_motion():
     trajectory = pickle.loads(pickle.dumps(PROPAGATORS["taylor"]()(TIMES)))
     assert trajectory.omega.shape == (7, 3) and trajectory.quaternion.shape == (7, 4)
