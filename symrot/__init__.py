@@ -32,7 +32,7 @@ _NAMES_OF_MODULES = {
     "planning.plan": ("Plan",),
     "planning.rules": ("RuleOutcome",),
     "planning.scene_kernel": ("SceneKernel",),
-    "ensemble.ensemble": ("Ensemble", "EnsembleStats", "propagate_ensemble"),
+    "ensemble.ensemble": ("Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"),
     "workshop.certification": (
         "Audit",
         "Certificate",
@@ -51,6 +51,9 @@ _NAMES_OF_MODULES = {
     "propagation.propagator": ("Propagator",),
     "propagation.steppers.stepping": ("Stats",),
     "propagation.trajectory": ("Invariant", "Trajectory"),
+    "report.output": ("save",),
+    "report.plot": ("plot",),
+    "results.saved": ("SavedTrajectory", "load"),
     "viewer.show": ("in_notebook", "show"),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}

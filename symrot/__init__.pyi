@@ -7,7 +7,7 @@ from symrot.checker.verdict import Diagnosis, Dimensions, Identification, Repair
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import Structure
-from symrot.ensemble.ensemble import Ensemble, EnsembleStats, propagate_ensemble
+from symrot.ensemble.ensemble import Ensemble, EnsembleMember, EnsembleStats, propagate_ensemble
 from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Counterexample
@@ -27,6 +27,9 @@ from symrot.propagation.propagate import propagate, propagator
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Invariant, Trajectory
+from symrot.report.output import save
+from symrot.report.plot import plot
+from symrot.results.saved import SavedTrajectory, load
 from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
 from symrot.viewer.show import in_notebook, show
 from symrot.workshop.certification import (
@@ -58,6 +61,7 @@ __all__ = [
     "Dimensions",
     "Emitted",
     "Ensemble",
+    "EnsembleMember",
     "EnsembleStats",
     "EulerRateMatrix",
     "Event",
@@ -79,6 +83,7 @@ __all__ = [
     "Repair",
     "RoundingBounds",
     "RuleOutcome",
+    "SavedTrajectory",
     "Scene",
     "SceneKernel",
     "SingularSet",
@@ -108,9 +113,11 @@ __all__ = [
     "in_notebook",
     "kernel_names",
     "largest_box",
+    "load",
     "load_scene",
     "normal_form",
     "plan",
+    "plot",
     "propagate",
     "propagate_ensemble",
     "propagator",
@@ -118,6 +125,7 @@ __all__ = [
     "quaternion_rates",
     "quaternion_to_dcm",
     "rate_jacobian",
+    "save",
     "shipped_scenes",
     "show",
     "singularity_dossier",

@@ -27,6 +27,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"planning", "kernels"},
     {"codegen", "build"},
     {"certificates"},
+    {"results"},
     {"closed_form", "propagation"},
     {"ensemble"},
     {"viewer"},
@@ -42,7 +43,7 @@ WITHOUT_SYMPY = (
     "kinematics.hamilton", "kinematics.rates",
     "inertia.composite",
     "inertia.principal", "dynamics.structure", "dynamics.torque_kinds", "scene.scene", "planning.plan", "planning.scene_kernel", "build.cache",
-    "propagation.propagator", "propagation.trajectory", "report.summary", "cli.main",
+    "propagation.propagator", "propagation.trajectory", "results.samples", "results.tables", "report.summary", "cli.main",
 )  # fmt: skip
 
 

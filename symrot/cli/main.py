@@ -98,7 +98,7 @@ def _run(options: Namespace) -> int:
     report = facts(propagator, trajectory, preparation)
     if options.out:
         progress("writing ..")
-        names = output.save(trajectory, options.out, propagator.tolerance)
+        names = output.save(trajectory, options.out)
         report["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
     if options.plot:
         progress("drawing ..")
@@ -167,7 +167,7 @@ def _write_partial(error: BaseException, propagator: Any, options: Namespace) ->
         return ""
     from symrot.report import output
 
-    output.save(part, options.out, propagator.tolerance)
+    output.save(part, options.out)
     return f"; {options.out} contains the {len(part)} samples before"
 
 

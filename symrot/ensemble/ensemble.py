@@ -1,22 +1,30 @@
 """Propagation of a scene from many initial states and with many values of its constants, all at once."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from operator import index
 from pathlib import Path
 from time import perf_counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.ensemble.motions import Followed, Problem, follow
+from symrot.ensemble.quantities import Source
 from symrot.ensemble.variation import read_times, read_variation
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.propagation.propagator import Propagator
+from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.scene import TOLERANCES, Scene, load_scene
+from symrot.results.samples import MotionSamples
+from symrot.scene.scene import QUANTITIES, TOLERANCES, Scene, load_scene
 
-__all__ = ["Ensemble", "EnsembleStats", "propagate_ensemble"]
+__all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"]
+
+UNAVERAGED = ("quaternion", "dcm", "euler")  # attitudes: the mean of their components is no attitude
 
 MOST_WORKERS = 1024
 
@@ -43,15 +51,75 @@ class EnsembleStats(NamedTuple):
     seconds: float
 
 
-class Ensemble:
+class EnsembleMember(MotionSamples):
+    """One motion of an ensemble, ``ensemble[k]``, with the quantities of a trajectory at its sample times.
+
+    Attributes
+    ----------
+    t : array, shape (m,)
+        Sample times, s.
+    method, message : str
+        The method, and the reason why the motion stopped early, or an empty text.
+    tolerance : float
+        Error of the motion to aim for.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> ensemble = symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2], [0, 2, 1]], t=[0, 1])
+    >>> ensemble[1].energy.shape, ensemble[-1].euler("ZXZ").shape
+    ((2,), (2, 3))
+    """
+
+    def __init__(self, ensemble: "Ensemble", number: int) -> None:
+        self._ensemble, self._number = ensemble, number
+        self.t = ensemble.t if ensemble.t.ndim == 1 else ensemble.t[number]
+        self.method, self.message = ensemble.methods[number], ensemble.messages[number]
+        self.tolerance = ensemble.tolerance
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        return f"<Motion {self._number} of {self._ensemble!r}>"
+
+    @property
+    def success(self) -> bool:
+        """Whether the motion reached its last time."""
+        return not self.message
+
+    @property
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (m, 3); NaN at times that the motion did not reach."""
+        omega: Floats = self._ensemble.omega[self._number]
+        return omega
+
+    @property
+    def quaternion(self) -> Floats:
+        """Attitude as unit quaternions, scalar first, body to space, shape (m, 4)."""
+        quaternion: Floats = self._ensemble.quaternion[self._number]
+        return quaternion
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene of this motion, with its own initial state and constants."""
+        return self._ensemble._source.variation.scene_of(self._number)
+
+    def _evaluate(self, *names: str) -> Floats:
+        values: Floats = self._ensemble._evaluated(names, [self._number])[0]
+        return values
+
+
+class Ensemble(MotionSamples):
     """The result of :func:`propagate_ensemble`: n motions of one scene. Conventions: :mod:`symrot.conventions`.
+
+    ``ensemble[k]`` is motion k, an :class:`EnsembleMember`. Quantities of trajectories, such as ``energy`` and
+    ``euler(sequence)``, have the shape (n, m, ...).
 
     Attributes
     ----------
     t : array, shape (m,) or (n, m)
         Sample times, s, in the order in which they were passed.
-    omega : array, shape (n, m, 3)
-        Angular velocity, body components, rad/s; NaN at times that a motion did not reach.
     status : array, shape (n,)
         0 for a motion that was followed to its last time, -1 for a motion that stopped early, as in SciPy's solve_ivp.
     messages : n texts
@@ -60,6 +128,8 @@ class Ensemble:
         The name of the method by which each motion was computed.
     stats : EnsembleStats
         Steps, evaluations and time.
+    tolerance : float
+        Error of each motion to aim for.
 
     Examples
     --------
@@ -68,8 +138,10 @@ class Ensemble:
     (1, 2, 4)
     """
 
-    def __init__(self, scene: Scene, t: Floats, followed: Followed, seconds: float) -> None:
-        self.scene, self.t, self.omega, self._quaternion = scene, t, followed.omega, followed.quaternion
+    def __init__(self, problem: Problem, followed: Followed, seconds: float) -> None:
+        self._source = Source(problem.variation, problem.plan)
+        self.t, self.tolerance = problem.times, problem.tolerance
+        self._omega, self._quaternion = followed.omega, followed.quaternion
         self.methods, self.messages = followed.methods, followed.messages
         self.status = np.array([-1 if message else 0 for message in followed.messages], dtype=np.int64)
         self.stats = EnsembleStats(followed.steps, followed.evaluations, seconds)
@@ -77,11 +149,28 @@ class Ensemble:
     def __len__(self) -> int:
         return len(self.omega)
 
+    def __getitem__(self, k: int) -> EnsembleMember:
+        """Return motion k; negative numbers count from the end."""
+        return EnsembleMember(self, range(len(self))[index(k)])
+
+    def __iter__(self) -> Iterator[EnsembleMember]:
+        return (EnsembleMember(self, k) for k in range(len(self)))
+
     def __repr__(self) -> str:
         broken = int((self.status != 0).sum())
         ending = f", {broken} stopped early" if broken else ""
-        kinds = "/".join(dict.fromkeys(self.methods))
-        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{ending}>"
+        count = self.t.shape[-1]
+        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {count} samples, {self.method}{ending}>"
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, whose initial state and constants the motions vary."""
+        return self._source.variation.scene
+
+    @property
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (n, m, 3); NaN at times that a motion did not reach."""
+        return self._omega
 
     @property
     def quaternion(self) -> Floats:
@@ -97,6 +186,96 @@ class Ensemble:
     def success(self) -> bool:
         """Whether every motion reached its last time."""
         return not self.status.any()
+
+    @property
+    def method(self) -> str:
+        """The names of all methods by which motions were computed, separated by slashes."""
+        return "/".join(dict.fromkeys(self.methods))
+
+    def _evaluate(self, *names: str) -> Floats:
+        return self._evaluated(names, range(len(self)))
+
+    def _evaluated(self, names: Sequence[str], chosen: Sequence[int]) -> Floats:
+        rows = list(chosen)
+        t = self.t if self.t.ndim == 1 else self.t[rows]
+        quaternion = None if self._quaternion is None else self._quaternion[rows]
+        return self._source.evaluate(names, t, self.omega[rows], quaternion, rows)
+
+    def mean(self, quantity: str, omit_stopped: bool = False) -> Floats:
+        """Return the mean of a quantity over all motions at each sample time, shape (m, ...).
+
+        Parameters
+        ----------
+        quantity : str
+            A name among ``output.quantities`` of a scene, such as ``"omega"``; no attitude, whose components have no
+            mean that is an attitude.
+        omit_stopped : bool
+            Whether to leave motions out at times that they did not reach; otherwise the mean is NaN there.
+
+        Raises
+        ------
+        InputError
+            For an attitude, an unknown quantity, or sample times that the motions do not share.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> ensemble = symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2], [0, 3, 2]], t=[0, 1])
+        >>> ensemble.mean("omega")[0].tolist()
+        [0.0, 2.0, 2.0]
+        """
+        mean: Floats = self._statistic(quantity, omit_stopped, (np.mean, np.nanmean))
+        return mean
+
+    def percentiles(self, quantity: str, q: ArrayLike, omit_stopped: bool = False) -> Floats:
+        """Return percentiles of a quantity over all motions at each sample time, shape (len(q), m, ...).
+
+        Parameters
+        ----------
+        quantity : str
+            As for :meth:`mean`.
+        q : float or array
+            Percentages from 0 to 100, such as ``[5, 50, 95]``. For a single number, the result has shape (m, ...).
+        omit_stopped : bool
+            As for :meth:`mean`.
+
+        Raises
+        ------
+        InputError
+            As for :meth:`mean`, or if a percentage is not from 0 to 100.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> ensemble = symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2], [0, 3, 2]], t=[0, 1])
+        >>> ensemble.percentiles("omega", [0, 100])[:, 0, 1].tolist()
+        [1.0, 3.0]
+        """
+        shares = real_array(q, "q", "percentages from 0 to 100")
+        if not ((shares >= 0) & (shares <= 100)).all():
+            raise InputError(f"q: expected percentages from 0 to 100, got {number.show(q)}")
+
+        def of(percentile: Callable[..., Any]) -> Callable[..., Any]:
+            return lambda values, axis: percentile(values, shares, axis=axis)
+
+        percentiles: Floats = self._statistic(quantity, omit_stopped, (of(np.percentile), of(np.nanpercentile)))
+        return percentiles
+
+    def _statistic(self, quantity: str, omit_stopped: bool, pair: tuple[Callable[..., Any], Callable[..., Any]]) -> Any:
+        """Return a statistic over the motions; ``pair`` computes it with all values, and without NaN."""
+        if quantity in UNAVERAGED or quantity not in QUANTITIES:
+            names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
+            raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
+        if self.t.ndim != 1:
+            raise InputError(
+                "t: expected sample times that all motions share, for statistics, got other times for each"
+            )
+        values = self.quantity(quantity)
+        if not omit_stopped:
+            return pair[0](values, axis=0)
+        with catch_warnings():  # no motion reached a time: the statistic is NaN there
+            simplefilter("ignore", RuntimeWarning)
+            return pair[1](values, axis=0)
 
 
 def propagate_ensemble(
@@ -173,7 +352,7 @@ def propagate_ensemble(
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
     aim = own if tolerance is None else _tolerance(tolerance)
     problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
-    return Ensemble(source, times, follow(problem, method), perf_counter() - began)
+    return Ensemble(problem, follow(problem, method), perf_counter() - began)
 
 
 def _tolerance(tolerance: float) -> float:

@@ -6,8 +6,11 @@ rejected steps. A feature of the torque is a short part that differs from its su
 may pass over it.
 """
 
+import copy
 import ctypes
 import math
+import pickle
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -96,6 +99,21 @@ class _Function(TorqueSource):
         self.error: BaseException | None = None
         self.pointer = CALLBACK(self._call)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return class and function; raise PicklingError in one sentence if pickle cannot save the function."""
+        if "cloudpickle" not in sys.modules:  # joblib and Dask load it; it saves functions that pickle refuses
+            try:
+                pickle.dumps(self.function)
+            except Exception as error:
+                raise pickle.PicklingError(
+                    f"torque: expected a function that can be pickled, such as one defined at the top of a module, got "
+                    f"{number.show(self.function)} ({error})"
+                ) from None
+        return _Function, (self.function,)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "_Function":
+        return _Function(copy.deepcopy(self.function, memo))
+
     def _call(self, t: float, omega: Any, quaternion: Any, torque: Any, user: Any) -> int:
         if self.error is not None:
             return 1
@@ -134,6 +152,16 @@ class _CFunction(TorqueSource):
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Raise PicklingError: the address of a C function means nothing in another process."""
+        raise pickle.PicklingError(
+            "torque: expected a Python function, a table or a formula in a motion that is pickled, got a C function, "
+            "whose address means nothing in another process"
+        )
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "_CFunction":
+        return self
 
     def pointer_in(self, library: Path) -> Any:
         """Return the user's C function itself."""

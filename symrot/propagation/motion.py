@@ -301,8 +301,8 @@ class Motion(ABC):
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
-    def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return a function from times, s, to omega, and to the quaternion if ``with_attitude``; shape (3 or 7, n).
+    def path(self, times: Floats) -> Callable[[Floats], Floats]:
+        """Return a function from times of the scene, s, to states, shape (n, N).
 
         It is defined on the shortest interval that contains the start and all ``times``.
         """
@@ -317,13 +317,20 @@ class Motion(ABC):
             states = motion.dense((span[0] - zero, span[1] - zero))
         except IntegrationStopped as error:
             raise (error.later(zero) if zero else error) from None
+        return lambda t: states(t - zero if zero else t)
+
+    def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
+        """Return a function from times, s, to omega, and to the quaternion if ``with_attitude``; shape (3 or 7, n).
+
+        ``path`` is a result of :meth:`path`.
+        """
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
         def at(t: ArrayLike) -> Floats:
             instants = np.asarray(t, dtype=float)
             flat = np.atleast_1d(instants).ravel()
-            values = self.evaluate(flat, states(flat - zero if zero else flat), names).T
+            values = self.evaluate(flat, path(flat), names).T
             return values.reshape(len(names), *instants.shape)
 
         return at

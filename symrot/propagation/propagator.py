@@ -1,5 +1,6 @@
 """The propagator of a scene: it chooses a method and prepares the kernel once, then computes any number of motions."""
 
+from collections.abc import Hashable
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
@@ -25,6 +26,7 @@ __all__ = ["Propagator", "read_start"]
 
 SMALLEST = float(number.SMALLEST)
 _UNIT_BITS = number.BITS + 2
+_PREPARED = ("_motion", "_by_structure", "sample_times")  # attributes that follow from the others
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +34,8 @@ Floats = NDArray[np.float64]
 class Propagator:
     """Function from sample times to the motion of one scene; :func:`symrot.propagator` returns it.
 
-    The equations are derived and compiled when the propagator is created; a call only computes the motion.
+    The equations are derived and compiled when the propagator is created; a call only computes the motion. A propagator
+    can be copied and pickled: the copy loads its compiled equations from the cache when it is first used.
 
     Attributes
     ----------
@@ -50,8 +53,20 @@ class Propagator:
 
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
-        self._motion = self._prepare(self._planned())
-        self._by_structure = {structure_key(scene, scene.initial): self._motion}  # the first motion of each structure
+        self._motion  # noqa: B018
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the scene and the options: a copy prepares its motion from them and from the cache, on first use."""
+        return {name: value for name, value in self.__dict__.items() if name not in _PREPARED}
+
+    @cached_property
+    def _motion(self) -> Motion:
+        return self._prepare(self._planned())
+
+    @cached_property
+    def _by_structure(self) -> dict[Hashable, Motion]:
+        """The first motion of each structure of initial states."""
+        return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial)
@@ -65,6 +80,8 @@ class Propagator:
         Initial states have the same structure if their equations have the same form. The first initial state of each
         structure is planned and prepared like a new scene; for later ones, only numbers change.
         """
+        if initial is self.scene.initial:
+            return self._motion
         if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
         key = structure_key(self.scene, initial)
@@ -148,7 +165,7 @@ class Propagator:
             states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._with_samples(error, motion, times, began) from None
-        return Trajectory(motion, times, states, setup.choice.method, stats, setup.message)
+        return Trajectory(motion, times, states, setup.choice.method, stats, setup.message, propagator=self)
 
     def _with_events(self, motion: Motion, times: Floats, events: Any) -> Trajectory:
         from symrot.propagation.events.event_result import integrate_with_events
@@ -156,7 +173,9 @@ class Propagator:
 
         result = integrate_with_events(motion, times, read_events(events))
         message = motion.setup.message if result.error is None else str(result.error)
-        trajectory = Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
+        trajectory = Trajectory(
+            motion, result.t, result.states, motion.choice.method, result.stats, message, result, propagator=self
+        )
         if result.error is not None:
             result.error.trajectory = trajectory  # type: ignore[attr-defined]
             raise result.error
@@ -172,7 +191,8 @@ class Propagator:
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # in the order of the requested times
             states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
-            part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, "")
+            reached = times[samples.numbers[numbers]]
+            part = Trajectory(motion, reached, states, motion.choice.method, stats, "", propagator=self)
         if part is not None:
             part.message, part.status = str(ended) or "interrupted", -1
             ended.trajectory = part  # type: ignore[attr-defined]

@@ -1,25 +1,32 @@
 """Trajectories: the states of a motion at the sample times, and quantities that are computed from them on first use."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from pickle import PicklingError
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import symrot
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.kinematics import conversions
-from symrot.planning.plan import Plan
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
+from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
-from symrot.scene.scene import Scene
+from symrot.results.samples import MotionSamples
+from symrot.scene.scene import Initial, Scene
 
 __all__ = ["Invariant", "Trajectory"]
 
 Floats = NDArray[np.float64]
+_RECOMPUTED = (
+    "_motion", "_path", "_solution", "_states", "at_events", "dcm", "omega", "omega_space", "quaternion", "rotation",
+)  # fmt: skip
+"""Attributes that a copy of a trajectory computes again from the states and the propagator."""
 
 
 class Invariant(NamedTuple):
@@ -53,8 +60,18 @@ class Invariant(NamedTuple):
     drift: float
 
 
-class Trajectory:
+class MotionSource(Protocol):
+    """A propagator, as far as a trajectory needs it."""
+
+    def motion_from(self, initial: Initial) -> Motion:
+        """Return the motion from an initial state."""
+
+
+class Trajectory(MotionSamples):
     """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
+
+    A trajectory can be copied and pickled. Its samples travel with it; for anything else, such as :meth:`sol`, the copy
+    prepares the motion again from the scene and the cache.
 
     Attributes
     ----------
@@ -64,6 +81,12 @@ class Trajectory:
         The integrated states, in the order of ``states``; same layout as in solve_ivp.
     method, stats : str, Stats
         The method, and the cost of the motion: steps, evaluations, seconds.
+    plan : Plan
+        The plan of the motion, which says which states are integrated and why the others are not.
+    tolerance : float
+        Error of the trajectory to aim for.
+    has_external_torque : bool
+        Whether a torque without a formula acted: a function, or a table of samples.
     status, message, success : int, str, bool
         As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
         PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
@@ -72,6 +95,8 @@ class Trajectory:
         takes place if its formula comes nearer to zero than the error of the motion.
     t_events, y_events : list of arrays or None
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
+    events : tuple of Event, or None
+        The requested events. :attr:`at_events` has a trajectory of the samples at each of them.
     event_kinds : list of lists of str, or None
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
@@ -92,20 +117,34 @@ class Trajectory:
         stats: Stats,
         message: str,
         events: EventResult | None = None,
+        propagator: "MotionSource | None" = None,
     ) -> None:
-        self._motion, self._parts = motion, states
+        self._motion, self._parts, self._propagator = motion, states, propagator
+        self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.status, self.warnings = 0, motion.setup.warnings
-        self.t_events, self.y_events, self.event_kinds = None, None, None
+        self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
         if events is not None:
             self.status, self.warnings = int(events.ended), (*self.warnings, *events.warnings)
             self.t_events, self.y_events, self.event_kinds = events.t_events, events.y_events, events.kinds
+            self.events = events.events
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the samples and the propagator; a copy prepares the motion again if it needs more than the samples."""
+        if self._propagator is None:
+            raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
+        return {name: value for name, value in self.__dict__.items() if name not in _RECOMPUTED}
+
+    @cached_property
+    def _motion(self) -> Motion:
+        assert self._propagator is not None
+        return self._propagator.motion_from(self.scene.initial)
 
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
-        name = self._motion.plan.scene.name
+        name = self.scene.name
         return f"<Trajectory of {name}: {len(self.t)} samples, {self.method}, {self.stats.accepted} steps>"
 
     @property
@@ -114,24 +153,14 @@ class Trajectory:
         return self.status >= 0
 
     @property
-    def plan(self) -> Plan:
-        """The plan of the motion, which says which states are integrated and why the others are not."""
-        return self._motion.plan
-
-    @property
     def scene(self) -> Scene:
         """The scene of the motion, with the initial state of this trajectory."""
-        return self._motion.plan.scene
-
-    @property
-    def has_external_torque(self) -> bool:
-        """Whether a torque without a formula acted: a function, or a table of samples."""
-        return self._motion.has_external_torque
+        return self.plan.scene
 
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the integrated states, such as omega_1 and q0, in the order of ``y``."""
-        return self._motion.plan.states
+        return self.plan.states
 
     @cached_property
     def _states(self) -> Floats:
@@ -145,12 +174,15 @@ class Trajectory:
 
     def _evaluate(self, *names: str) -> Floats:
         """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel."""
+        columns = [name.removesuffix(" of t") for name in names]
+        if set(columns) <= set(self.states):
+            return self._states[:, [self.states.index(name) for name in columns]]
         return self._motion.evaluate(self.t, self._states, names)
 
     @property
     def has_attitude(self) -> bool:
         """Whether the attitude was computed; the plan leaves it out if neither a torque nor the output needs it."""
-        return self._motion.plan.structure.attitude
+        return self.plan.structure.attitude
 
     def _need_attitude(self) -> None:
         if not self.has_attitude:
@@ -173,73 +205,6 @@ class Trajectory:
         if isinstance(self._parts, tuple):
             return conversions.normalize(self._parts[1])
         return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
-
-    @cached_property
-    def dcm(self) -> Floats:
-        """The attitude as direction cosine matrices ``dcm_sb``, shape (n, 3, 3)."""
-        return conversions.quaternion_to_dcm(self.quaternion)
-
-    def euler(self, sequence: str, degrees: bool = False) -> Floats:
-        """Return Euler angles in order of application, shape (n, 3), rad.
-
-        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
-        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
-        """
-        return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
-
-    def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (n,)."""
-        return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
-
-    def _to_space(self, vectors_b: Floats) -> Floats:
-        vectors_s: Floats = np.einsum("nij,nj->ni", self.dcm, vectors_b)
-        return vectors_s
-
-    @cached_property
-    def omega_space(self) -> Floats:
-        """Angular velocity, space components, rad/s, shape (n, 3)."""
-        return self._to_space(self.omega)
-
-    @property
-    def polhode(self) -> Floats:
-        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
-        return self.omega
-
-    @property
-    def herpolhode(self) -> Floats:
-        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
-        return self.omega_space
-
-    @cached_property
-    def angular_momentum_body(self) -> Floats:
-        """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (n, 3)."""
-        return self._evaluate("momentum_1", "momentum_2", "momentum_3")
-
-    @cached_property
-    def angular_momentum_space(self) -> Floats:
-        """Angular momentum, including that of a rotor, space components, kg m^2/s, shape (n, 3)."""
-        return self._to_space(self.angular_momentum_body)
-
-    @cached_property
-    def kinetic_energy(self) -> Floats:
-        """Kinetic energy in J, shape (n,)."""
-        return self._evaluate("kinetic_energy")[:, 0]
-
-    @cached_property
-    def energy(self) -> Floats:
-        """Kinetic energy plus the potential energy of all torques that have a potential, in J, shape (n,)."""
-        return self._evaluate("energy")[:, 0]
-
-    @property
-    def axis_number(self) -> int:
-        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
-        principal = self.scene.body.principal
-        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
-
-    @cached_property
-    def axis(self) -> Floats:
-        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (n, 3)."""
-        return self.dcm[:, :, self.axis_number]
 
     @cached_property
     def invariants(self) -> list[Invariant]:
@@ -271,6 +236,78 @@ class Trajectory:
             return float(np.max(np.abs(values)))
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
+    def at(self, t: ArrayLike) -> "Trajectory":
+        """Return the trajectory at other times of the span, from the dense solution.
+
+        Parameters
+        ----------
+        t : float or array, shape (m,)
+            Times, s, between the first and the last time of the motion.
+
+        Returns
+        -------
+        Trajectory
+            The m samples, with all quantities. It has no events.
+
+        Raises
+        ------
+        InputError
+            If a time is not finite or lies outside the motion.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.propagate("t_handle").at(0.5).omega.shape
+        (1, 3)
+        """
+        times = real_array(t, "t", "times in s", ndmin=1)
+        if times.ndim != 1 or not np.isfinite(times).all():
+            raise InputError(f"t: expected finite times in s, shape (m,), got {number.show(t)}")
+        if len(times) and not (self._span[0] <= times.min() and times.max() <= self._span[1]):
+            low, high = self._span
+            raise InputError(f"t: expected times from {low!r} to {high!r} s, where the motion is known, got {t!r}")
+        return self._sampled(times, self._path(times))
+
+    def resample(self, times: ArrayLike | int) -> "Trajectory":
+        """Return the trajectory at the given times, or at a number of evenly spaced times of its span.
+
+        Parameters
+        ----------
+        times : int or array, shape (m,)
+            The number of samples, 2 or more, or their times, s, as for :meth:`at`.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.propagate("t_handle").resample(5).t.tolist()
+        [0.0, 3.0, 6.0, 9.0, 12.0]
+        """
+        if isinstance(times, bool) or not isinstance(times, int | np.integer):
+            return self.at(times)
+        if times < 2 or not len(self):
+            raise InputError(f"times: expected 2 samples or more of a motion that has samples, got {times}")
+        return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
+
+    @cached_property
+    def at_events(self) -> "list[Trajectory]":
+        """For each requested event, the trajectory at the times of the event; empty if none was requested."""
+        pairs = zip(self.t_events or (), self.y_events or (), strict=True)
+        return [self._sampled(t, states) for t, states in pairs]
+
+    def _sampled(self, t: Floats, states: Floats) -> "Trajectory":
+        other = Trajectory(self._motion, t, states, self.method, self.stats, self.message, propagator=self._propagator)
+        other.warnings = self.warnings
+        return other
+
+    @cached_property
+    def _span(self) -> tuple[float, float]:
+        ends = float(self.scene.span.start), *self.t.tolist()
+        return min(ends), max(ends)
+
+    @cached_property
+    def _path(self) -> Callable[[Floats], Floats]:
+        return self._motion.path(self.t)
+
     def sol(self, t: ArrayLike) -> Floats:
         """Return omega and quaternion at any m times of the span, shape (7, m), as ``sol`` of solve_ivp does.
 
@@ -281,7 +318,25 @@ class Trajectory:
 
     @cached_property
     def _solution(self) -> Callable[[ArrayLike], Floats]:
-        return self._motion.solution(self.t, self.has_attitude)
+        return self._motion.solution(self._path, self.has_attitude)
+
+    def plot(self, ax: Any = None, panel: str = "rates") -> Any:
+        """Draw one panel of the figure into axes of matplotlib, and return the axes; see :func:`symrot.plot`.
+
+        ``panel`` is ``"rates"``, ``"attitude"``, ``"drift"``, ``"body"`` or ``"space"``.
+        """
+        return symrot.plot(self, ax, panel)
+
+    def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
+        """Write the samples with labels and events to a file, which :func:`symrot.load` reads; see :func:`symrot.save`.
+
+        ``quantities`` are the names of the quantities to write; default: the output quantities of the scene, the
+        angular velocity and, if it was computed, the attitude.
+        """
+        if quantities is None:
+            present = ("omega", "quaternion") if self.has_attitude else ("omega",)
+            quantities = tuple(dict.fromkeys((*present, *self.scene.output.quantities)))
+        return symrot.save(self, path, quantities)
 
     def show(self, path: str | Path | None = None) -> Path:
         """Write the motion as one offline page of HTML that plays it; see :func:`symrot.show`.
@@ -293,13 +348,3 @@ class Trajectory:
     def _repr_html_(self) -> str:
         """Return the page of the motion in a frame, as a notebook shows it."""
         return symrot.in_notebook(self)
-
-    def quantity(self, name: str) -> Floats:
-        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
-        if name == "euler":
-            output = self.scene.output
-            if output.sequence is None:
-                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
-            return self.euler(output.sequence, degrees=output.degrees)
-        value: Floats = getattr(self, name)
-        return value

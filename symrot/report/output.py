@@ -4,16 +4,16 @@ Equal motions give files with equal bytes.
 """
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
 from symrot import __version__, conventions
-from symrot.files.writing import write
-from symrot.report.labels import LOCK, Labelled, labelled
+from symrot.files.writing import check_target, write
 from symrot.report.layout import columns, exact, one_line
+from symrot.results.labels import LOCK, Labelled, event_array, labelled
 
 if TYPE_CHECKING:
     from symrot.propagation.trajectory import Trajectory
@@ -24,8 +24,9 @@ __all__ = ["FORMATS", "metadata", "save"]
 ROWS_AT_ONCE = 4096
 
 
-def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float) -> "FileRecord":
+def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
     """Return the description for the head of a trajectory file: scene, method, meaning of each array, conventions."""
+    requested = zip(trajectory.events or (), trajectory.event_kinds or (), trajectory.t_events or (), strict=True)
     scene, stats = trajectory.scene, trajectory.stats
     return {
         "symrot": __version__,
@@ -33,7 +34,10 @@ def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float)
         "title": scene.title,
         "source": scene.source,
         "method": trajectory.method,
-        "tolerance": tolerance,
+        "tolerance": trajectory.tolerance,
+        "status": trajectory.status,
+        "message": trajectory.message,
+        "warnings": list(trajectory.warnings),
         "steps": stats.accepted,
         "evaluations": stats.evaluations,
         "moments_of_inertia": [exact(moment) for moment in scene.body.principal.moments],
@@ -47,6 +51,9 @@ def metadata(trajectory: "Trajectory", arrays: list[Labelled], tolerance: float)
             {"name": item.name, "unit": item.unit, "drift": item.drift, "reason": item.reason}
             for item in trajectory.invariants
         ],
+        "events": [
+            {"formula": event.formula, "kinds": kinds, "times": times.tolist()} for event, kinds, times in requested
+        ],
         "conventions": _conventions(),
     }  # fmt: skip
 
@@ -55,8 +62,8 @@ def _conventions() -> str:
     return (conventions.__doc__ or "").split("\n", 2)[-1].strip()
 
 
-def _npz(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
-    content: dict[str, Any] = {item.name: item.values for item in arrays}
+def _npz(stream: BinaryIO, arrays: list[Labelled], events: list[Labelled], about: "FileRecord") -> None:
+    content: dict[str, Any] = {item.name: item.values for item in (*arrays, *events)}
     np.savez_compressed(stream, metadata=np.array(json.dumps(about, indent=1)), **content)
 
 
@@ -70,11 +77,19 @@ def _head(arrays: list[Labelled], about: "FileRecord") -> Iterator[str]:
     yield from columns(rows, width=1000)
     yield "invariants (largest change since the start, relative):"
     yield from columns([(f"  {i['name']}", f"{i['drift']:.3g}", i["reason"]) for i in about["invariants"]], width=1000)
+    if about["events"]:
+        yield "events:"
+        listed = [
+            (f"  {one_line(event['formula'])}", f"t = {t!r} s", kind)
+            for event in about["events"]
+            for t, kind in zip(event["times"], event["kinds"], strict=True)
+        ]
+        yield from columns(listed, width=1000)
     yield "conventions:"
     yield from (f"  {line}" for line in about["conventions"].splitlines())
 
 
-def _csv(stream: BinaryIO, arrays: list[Labelled], about: "FileRecord") -> None:
+def _csv(stream: BinaryIO, arrays: list[Labelled], events: list[Labelled], about: "FileRecord") -> None:
     lines = [f"# {line}".rstrip() for line in _head(arrays, about)]
     lines.append(",".join(component for item in arrays for component in item.components))
     stream.write(("\n".join(lines) + "\n").encode())
@@ -91,28 +106,56 @@ def _printed(item: Labelled, part: slice) -> list[list[str]]:
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
 
-FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], "FileRecord"], None]] = {".npz": _npz, ".csv": _csv}
+Writer = Callable[[BinaryIO, list[Labelled], list[Labelled], "FileRecord"], None]
+FORMATS: dict[str, Writer] = {
+    ".npz": _npz,
+    ".csv": _csv,
+}
 """The suffix of a file -> the function that writes this format."""
 
 
-def save(trajectory: "Trajectory", path: Path, tolerance: float) -> list[str]:
-    """Write the output quantities of a trajectory to a file and return their names.
+def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
+    """Write a trajectory to a file and return the names of the quantities in it.
 
-    An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``. A
-    CSV file contains comment lines, a line of column names, and numbers with all digits (``pandas.read_csv(file,
-    comment="#")``).
+    An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``, and
+    :func:`symrot.load` reads it. A CSV file contains comment lines, a line of column names, and numbers with all digits
+    (``pandas.read_csv(file, comment="#")``). Events are written too: in an NPZ file with the states at them.
 
     Parameters
     ----------
     trajectory : Trajectory
         The motion to write.
-    path : Path
+    path : str or Path
         The file to write; its suffix, one of :data:`FORMATS`, decides the format.
-    tolerance : float
-        The tolerance of the propagation, which is noted in the file.
+    quantities : sequence of str, optional
+        Names of the quantities to write; default: the output quantities of the scene.
+
+    Returns
+    -------
+    list of str
+        The names, beginning with ``t``.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or if there is no quantity with one of the names.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     symrot.save(symrot.propagate("t_handle"), f"{folder}/motion.npz", ["omega", "energy"])
+    ['t', 'omega', 'energy']
     """
-    arrays = labelled(trajectory)
-    about = metadata(trajectory, arrays, tolerance)
+    path = Path(path)
+    check_target(path, tuple(FORMATS), "save")
+    arrays = labelled(trajectory, quantities)
+    about = metadata(trajectory, arrays)
+    events = [
+        item._replace(name=event_array(number, item.name))
+        for number, states in enumerate(trajectory.at_events, start=1)
+        for item in labelled(states, quantities)
+    ]
     writer = FORMATS[path.suffix.lower()]
-    write(path, lambda stream: writer(stream, arrays, about))
+    write(path, lambda stream: writer(stream, arrays, events, about))
     return [item.name for item in arrays]

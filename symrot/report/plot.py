@@ -4,9 +4,10 @@ The module uses matplotlib's objects and the Agg canvas, without a window or glo
 equal bytes.
 """
 
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,10 @@ from symrot.errors import InputError
 from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
 
-__all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
+if TYPE_CHECKING:
+    from symrot.propagation.trajectory import Trajectory
+
+__all__ = ["PANELS", "SUFFIXES", "figure", "plot", "require_matplotlib", "save"]
 
 Floats = NDArray[np.float64]
 
@@ -27,11 +31,11 @@ TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "
 QUIET = 0.01  # a component that changes by less than this fraction of its size may be written as text, not drawn
 
 
-def require_matplotlib() -> None:
+def require_matplotlib(option: str = "--plot") -> None:
     """Raise InputError if matplotlib is missing."""
     if find_spec("matplotlib") is None:
         raise InputError(
-            "--plot: expected matplotlib, but it is not installed; install it with pip install 'symrot[plot]'"
+            f"{option}: expected matplotlib, but it is not installed; install it with pip install 'symrot[plot]'"
         )
 
 
@@ -149,6 +153,69 @@ def _space_sphere(axes: Any, trajectory: Any) -> None:
     name = "Symmetry axis" if symmetric else f"Body axis {trajectory.axis_number + 1}"
     draw_directions(axes, trajectory.axis, ("x", "y", "z"))
     axes.set_title(f"{name} in space")
+
+
+OVER_TIME: dict[str, Callable[[Any, Floats, Any], None]] = {
+    "rates": _rates,
+    "attitude": _attitude,
+    "drift": lambda axes, t, trajectory: _drift(axes, t, trajectory, trajectory.tolerance),
+}
+ON_SPHERES: dict[str, Callable[[Any, Any], None]] = {"body": _body_sphere, "space": _space_sphere}
+PANELS = (*OVER_TIME, *ON_SPHERES)
+"""The panels of a figure: angular velocity, attitude, drift of conserved quantities; paths in the body and in space."""
+
+
+def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
+    """Draw one panel of the figure of a motion into axes of matplotlib.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; the panel joins its samples.
+    ax : matplotlib Axes, optional
+        The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
+    panel : str
+        ``"rates"``, the angular velocity in the body; ``"attitude"``, Euler angles if the scene has a sequence, else
+        the quaternion; ``"drift"`` of the conserved quantities; ``"body"``, the path of the angular momentum or the
+        axis of rotation in the body; ``"space"``, the path of the symmetry axis in space.
+
+    Returns
+    -------
+    matplotlib Axes
+        The axes.
+
+    Raises
+    ------
+    InputError
+        If there is no such panel, matplotlib is not installed, or the trajectory has no samples or no attitude to draw.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> from matplotlib.figure import Figure
+    >>> symrot.plot(symrot.propagate("t_handle"), Figure().add_subplot(), "space").get_title()
+    'Body axis 3 in space'
+    """
+    if panel not in PANELS:
+        raise InputError(f"panel: expected one of {', '.join(PANELS)}, got {panel!r}")
+    require_matplotlib("plot")
+    if not len(trajectory):
+        raise InputError("plot: expected a trajectory with samples, got one without")
+    if panel in ("attitude", "space"):
+        trajectory.quaternion  # noqa: B018 - an error comes before a new figure
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.subplots()[1]
+    if panel in ON_SPHERES:
+        ON_SPHERES[panel](ax, trajectory)
+        return ax
+    t, unit = _times(trajectory)
+    OVER_TIME[panel](ax, t, trajectory)
+    if t.min() < t.max():
+        ax.set_xlim(t.min(), t.max())
+    ax.set_xlabel(f"t ({unit})")
+    return ax
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:

@@ -205,6 +205,14 @@ class DriftRecord(TypedDict):
     reason: str
 
 
+class EventRecord(TypedDict):
+    """The times, s, of one event and its kind at each of them, as recorded in a file of samples."""
+
+    formula: str
+    kinds: list[str]
+    times: list[float]
+
+
 class FileRecord(TypedDict):
     """The description at the beginning of a file of samples."""
 
@@ -214,9 +222,13 @@ class FileRecord(TypedDict):
     source: str
     method: str
     tolerance: float
+    status: int
+    message: str
+    warnings: list[str]
     steps: int
     evaluations: int
     moments_of_inertia: list[str]
     arrays: dict[str, ArrayRecord]
     invariants: list[DriftRecord]
+    events: list[EventRecord]
     conventions: str

@@ -2,14 +2,19 @@
 
 import importlib.util
 import sys
+import tomllib
 
 import numpy as np
 import pytest
 
 import symrot
 from symrot.cli import main as cli
+from symrot.scene.scene import Scene
 
 pytest.importorskip("matplotlib")
+
+from matplotlib import pyplot
+from matplotlib.figure import Figure
 
 from symrot.report import plot, sphere
 
@@ -93,3 +98,37 @@ def test_missing_matplotlib_is_one_sentence(capsys, monkeypatch, tmp_path):
 ])  # fmt: skip
 def test_units_suit_small_numbers(size, expected):
     assert sphere.prefixed(size, "rad/s") == expected
+
+
+def test_each_panel_is_drawn_into_axes_as_on_the_page():
+    motion = symrot.propagate("heavy_top_loops")
+    titles = {panel.get_title(loc="left") or panel.get_title() for panel in plot.figure(motion, 1e-12).axes}
+    for name in plot.PANELS:
+        axes = Figure().add_subplot()
+        assert motion.plot(ax=axes, panel=name) is axes
+        title = axes.get_title(loc="left") or axes.get_title()
+        assert title in titles
+        titles.remove(title)
+        assert (axes.get_xlabel() == "t (s)") == (name in plot.OVER_TIME)
+    assert not titles
+
+
+def test_a_panel_without_axes_gets_a_figure_of_pyplot():
+    axes = symrot.propagate("t_handle").plot()
+    assert pyplot.get_fignums() and axes.figure is pyplot.gcf() and len(axes.lines) == 3
+    pyplot.close(axes.figure)
+
+
+def test_panels_that_cannot_be_drawn_are_refused_in_a_sentence():
+    motion = symrot.propagate("t_handle")
+    with pytest.raises(symrot.InputError, match="panel: expected one of rates, attitude, drift, body, space, got 'x'"):
+        motion.plot(panel="x")
+    with pytest.raises(symrot.InputError, match="plot: expected a trajectory with samples"):
+        motion.at([]).plot()
+    scene = Scene.from_dict(
+        tomllib.loads(SCENE.format(body="principal = [1, 2, 3]", omega="[1, 0.1, 1]", quantities='["omega"]'))
+    )
+    with pytest.raises(symrot.InputError, match="the attitude was not computed"):
+        symrot.propagate(scene).plot(panel="space")
+    assert not pyplot.get_fignums()
+    assert symrot.propagator("t_handle")([1.0]).plot(Figure().add_subplot(), "rates").get_xlabel() == "t (s)"

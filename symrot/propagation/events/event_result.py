@@ -57,6 +57,8 @@ class EventResult(NamedTuple):
         the motion is followed, away from its start.
     ended : bool
         Whether a terminal event ended the motion after or before the start.
+    events : tuple of Event
+        The events, in the order in which they were requested.
     warnings : tuple of str
         A sentence for each event whose formula comes nearer to zero than the error of the motion.
     error : PropagationError or None
@@ -70,6 +72,7 @@ class EventResult(NamedTuple):
     y_events: list[Floats]
     kinds: list[list[str]]
     ended: bool
+    events: tuple[Event, ...]
     warnings: tuple[str, ...]
     error: PropagationError | None
 
@@ -154,6 +157,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
         [[each.kind for each, _ in group] for group in own],
         ended,
+        tuple(events),
         tuple(_warnings(events, doubts)),
         errors[0] if errors else None,
     )

@@ -27,6 +27,10 @@ class IntegrationStopped(PropagationError):
         self.samples: Samples | None = None  # the samples before t
         self.recording: Any = None  # the motion before t, if it was being recorded
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return class and arguments, so that the error passes from one process to another; without samples."""
+        return IntegrationStopped, (self.t, self.reason, self.stop)
+
     def later(self, epoch: float) -> "IntegrationStopped":
         """Return the same error with ``epoch``, s, added to its times.
 

@@ -1,13 +1,15 @@
 """The output quantities of a trajectory with labels: names of components, meaning, unit and frame."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.errors import InputError
 from symrot.scene.scene import QUANTITIES, Output
 
-__all__ = ["LOCK", "Labelled", "labelled"]
+__all__ = ["LOCK", "About", "Labelled", "about", "labelled"]
 
 BODY, SPACE = ("1", "2", "3"), ("x", "y", "z")
 LOCK = "euler_lock"
@@ -53,15 +55,44 @@ def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
     return names, "deg" if output.degrees else "rad", f"Euler angles {sequence}, {kind}, in order of application"
 
 
-def labelled(trajectory: Any) -> list[Labelled]:
-    """Return the time and the output quantities of a trajectory, each with its labels.
+class About(NamedTuple):
+    """The origin of a result: the scene by name, its title and source, the method and the tolerance."""
+
+    scene: str
+    title: str
+    source: str
+    method: str
+    tolerance: float
+
+
+def about(trajectory: Any) -> About:
+    """Return the origin of a trajectory."""
+    scene = trajectory.scene
+    return About(scene.name, scene.title, scene.source, trajectory.method, trajectory.tolerance)
+
+
+def event_array(number: int, quantity: str) -> str:
+    """Return the name of an array in a file: a quantity at the times of one event, the first of which has number 1."""
+    return f"event_{number}_{quantity}"
+
+
+def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
+    """Return the time and the named quantities of a trajectory, by default its output, each with its labels.
 
     Euler angles are followed by the quantity :data:`LOCK`. It is true for samples in gimbal lock, where only the sum or
     the difference of two angles is defined.
+
+    Raises
+    ------
+    InputError
+        If there is no quantity with one of the names, or if the trajectory cannot compute it.
     """
     output = trajectory.scene.output
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
-    for name in output.quantities:
+    chosen = output.quantities if names is None else (names,) if isinstance(names, str) else names
+    for name in chosen:
+        if name not in QUANTITIES:
+            raise InputError(f"quantities: expected names among {', '.join(QUANTITIES)}, got {name!r}")
         unit, meaning = QUANTITIES[name]
         components = COMPONENTS.get(name, ())
         if name == "euler":

@@ -1,0 +1,45 @@
+"""Quantities of many motions at once: the kernel of the scene, evaluated for arrays of states and of constants."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.ensemble.numbers import Numbers
+from symrot.ensemble.variation import Variation
+from symrot.planning.plan import Plan
+from symrot.propagation.array_functions import ARRAY_FUNCTIONS
+from symrot.propagation.compiled_models import scene_kernel
+from symrot.propagation.steppers.stepping import Floats
+
+__all__ = ["Source"]
+
+
+class Source(NamedTuple):
+    """What the quantities of an ensemble are computed from: its variation, and a plan valid for all its motions."""
+
+    variation: Variation
+    plan: Plan
+
+    def evaluate(
+        self, names: Sequence[str], t: Floats, omega: Floats, quaternion: Floats | None, chosen: Sequence[int]
+    ) -> Floats:
+        """Return the named output quantities of the chosen motions, shape (n, m, len(names)).
+
+        ``omega`` and ``quaternion`` are the samples of these motions, ``t`` their times, shape (m,) or (n, m).
+        """
+        structure = self.plan.structure.unreduced()
+        plan = replace(self.plan, structure=replace(structure, attitude=quaternion is not None))
+        kernel = scene_kernel(plan)
+        numbers = Numbers(self.variation, plan, chosen).bound(kernel.quantity_parameters)
+        values: dict[str, Any] = {f"omega_{k + 1}": omega[..., k] for k in range(3)}
+        if quaternion is not None:
+            values |= {f"q{k}": quaternion[..., k] for k in range(4)}
+        values = {name: values[name] for name in plan.states} | {"t": t}
+        values |= {name: numbers[:, k, None] for k, (name, _) in enumerate(kernel.quantity_parameters)}
+        outputs = kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
+        result = np.empty((*omega.shape[:-1], len(names)))
+        for k, name in enumerate(names):
+            result[..., k] = outputs[name]
+        return result

@@ -1,0 +1,195 @@
+"""Samples of a motion as other packages take them: rotations of SciPy, data frames of pandas, data sets of xarray."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.kinematics import conversions
+from symrot.results import tables
+from symrot.results.labels import About, Labelled, about, labelled
+from symrot.scene.scene import Scene
+
+__all__ = ["MotionSamples", "Samples"]
+
+Floats = NDArray[np.float64]
+
+
+class Samples(ABC):
+    """The angular velocity and the attitude of a motion at times ``t``, and quantities that follow from them alone.
+
+    The methods compute with samples of any shape: (m,) for one motion, (n, m) for n motions.
+    """
+
+    t: Floats
+
+    @property
+    @abstractmethod
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (..., 3)."""
+
+    @property
+    @abstractmethod
+    def quaternion(self) -> Floats:
+        """Attitude as unit quaternions, scalar first, body to space, shape (..., 4)."""
+
+    @abstractmethod
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+
+    @property
+    @abstractmethod
+    def _about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+
+    @cached_property
+    def dcm(self) -> Floats:
+        """The attitude as direction cosine matrices ``dcm_sb``, shape (..., 3, 3)."""
+        return conversions.quaternion_to_dcm(self.quaternion)
+
+    def euler(self, sequence: str, degrees: bool = False) -> Floats:
+        """Return Euler angles in order of application, shape (..., 3), rad.
+
+        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
+        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
+        """
+        return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
+
+    def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
+        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (...)."""
+        return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
+
+    def _to_space(self, vectors_b: Floats) -> Floats:
+        vectors_s: Floats = np.einsum("...ij,...j->...i", self.dcm, vectors_b)
+        return vectors_s
+
+    @cached_property
+    def omega_space(self) -> Floats:
+        """Angular velocity, space components, rad/s, shape (..., 3)."""
+        return self._to_space(self.omega)
+
+    @property
+    def polhode(self) -> Floats:
+        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
+        return self.omega
+
+    @property
+    def herpolhode(self) -> Floats:
+        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
+        return self.omega_space
+
+    @cached_property
+    def rotation(self) -> Any:
+        """The attitudes as a ``scipy.spatial.transform.Rotation`` from body to space; n motions one after another."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_quat(self.quaternion.reshape(-1, 4)[:, [1, 2, 3, 0]])
+
+    def to_dataframe(self, quantities: Sequence[str] | None = None) -> Any:
+        """Return the samples as a pandas DataFrame: one row for each sample, one column for each component.
+
+        Parameters
+        ----------
+        quantities : sequence of str, optional
+            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The index is ``t``, s. ``attrs["units"]``, ``attrs["frames"]`` and ``attrs["meanings"]`` describe the
+            columns.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
+        """
+        return tables.dataframe(self._labelled(quantities), self._about)
+
+    def to_xarray(self, quantities: Sequence[str] | None = None) -> Any:
+        """Return the samples as an xarray Dataset: one variable for each quantity.
+
+        Parameters
+        ----------
+        quantities : sequence of str, optional
+            As for :meth:`to_dataframe`.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``. Each variable has the
+            attributes ``units``, ``long_name`` and ``frame``.
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed (``pip install 'symrot[frames]'``), or if a quantity is not available.
+        """
+        return tables.dataset(self._labelled(quantities), self._about)
+
+
+class MotionSamples(Samples):
+    """Samples of a motion whose scene is known, with the quantities that its kernel computes."""
+
+    @property
+    @abstractmethod
+    def scene(self) -> Scene:
+        """The scene of the motion."""
+
+    @abstractmethod
+    def _evaluate(self, *names: str) -> Floats:
+        """Return the named output quantities of the kernel at the samples, shape (..., len(names))."""
+
+    @cached_property
+    def angular_momentum_body(self) -> Floats:
+        """Angular momentum, including that of a rotor, body components, kg m^2/s, shape (..., 3)."""
+        return self._evaluate("momentum_1", "momentum_2", "momentum_3")
+
+    @cached_property
+    def angular_momentum_space(self) -> Floats:
+        """Angular momentum, including that of a rotor, space components, kg m^2/s, shape (..., 3)."""
+        return self._to_space(self.angular_momentum_body)
+
+    @cached_property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy in J, shape (...)."""
+        return self._evaluate("kinetic_energy")[..., 0]
+
+    @cached_property
+    def energy(self) -> Floats:
+        """Kinetic energy plus the potential energy of all torques that have a potential, in J, shape (...)."""
+        return self._evaluate("energy")[..., 0]
+
+    @property
+    def axis_number(self) -> int:
+        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
+        principal = self.scene.body.principal
+        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
+
+    @cached_property
+    def axis(self) -> Floats:
+        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (..., 3)."""
+        return self.dcm[..., self.axis_number]
+
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+        return labelled(self, quantities)
+
+    @property
+    def _about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+        return about(self)
+
+    def quantity(self, name: str) -> Floats:
+        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
+        if name == "euler":
+            output = self.scene.output
+            if output.sequence is None:
+                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
+            return self.euler(output.sequence, degrees=output.degrees)
+        value: Floats = getattr(self, name)
+        return value

@@ -1,0 +1,189 @@
+"""Trajectories read from the NPZ files that ``trajectory.save`` and ``symrot run --out`` write.
+
+A file contains arrays of numbers and one JSON text, no pickled objects. Reading needs no kernel and no compiler.
+"""
+
+import json
+import math
+import zipfile
+import zlib
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.files.reading import refuse_special
+from symrot.results.labels import About, Labelled, event_array
+from symrot.results.samples import Samples
+
+__all__ = ["SavedTrajectory", "load"]
+
+Floats = NDArray[np.float64]
+UNREADABLE = (OSError, ValueError, EOFError, LookupError, TypeError, AttributeError, NotImplementedError, RuntimeError,
+              zipfile.BadZipFile, zlib.error)  # fmt: skip
+
+
+class SavedTrajectory(Samples):
+    """The samples of a trajectory from a file; :func:`symrot.load` returns it. Conventions: :mod:`symrot.conventions`.
+
+    The quantities in the file are attributes with their names, such as ``energy``. Quantities that follow from angular
+    velocity and attitude, such as ``dcm`` and ``euler(sequence)``, are computed.
+
+    Attributes
+    ----------
+    t : array, shape (n,)
+        The sample times, s.
+    metadata : dict
+        The description in the file: scene, method, steps, meaning of each array, conserved quantities, conventions.
+    at_events : list of SavedTrajectory
+        For each event, the samples at its times.
+    event_kinds : list of lists of str
+        For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = symrot.propagate("t_handle", events=["omega_3 == 0"]).save(f"{folder}/motion.npz")
+    ...     saved = symrot.load(f"{folder}/motion.npz")
+    >>> saved.energy.shape, saved.at_events[0].t[:2].round(8).tolist()
+    ((2401,), [1.18541555, 3.55624666])
+    """
+
+    def __init__(self, metadata: dict[str, Any], items: Sequence[Labelled]) -> None:
+        self.metadata, self._items = metadata, {item.name: item for item in items}
+        self.t = self._items["t"].values
+        self.at_events: list[SavedTrajectory] = []
+        self.event_kinds: list[list[str]] = []
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        return f"<SavedTrajectory of {self._about.scene}: {len(self)} samples, {', '.join(self._items)}>"
+
+    def __getattr__(self, name: str) -> Any:
+        items = self.__dict__.get("_items", {})
+        if name in items:
+            return items[name].values
+        raise AttributeError(f"the file of the trajectory has no quantity {name!r}; it has {', '.join(items)}")
+
+    def quantity(self, name: str) -> Floats:
+        """Return a quantity in the file by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
+        if name not in self._items:
+            raise InputError(f"{name}: expected a file with this quantity, got one with {', '.join(self._items)}")
+        values: Floats = self._items[name].values
+        return values
+
+    @cached_property
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (n, 3)."""
+        return self.quantity("omega")
+
+    @cached_property
+    def quaternion(self) -> Floats:
+        """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
+        return self.quantity("quaternion")
+
+    @property
+    def method(self) -> str:
+        """The method that followed the motion."""
+        return self._about.method
+
+    @property
+    def success(self) -> bool:
+        """Whether the motion was followed to its last sample time or to a terminal event."""
+        return bool(self.metadata["status"] >= 0)
+
+    @property
+    def t_events(self) -> list[Floats]:
+        """For each event its times, s."""
+        return [samples.t for samples in self.at_events]
+
+    @property
+    def _about(self) -> About:
+        """The origin of the samples: scene, method and tolerance."""
+        return About(*(self.metadata[name] for name in About._fields))
+
+    def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
+        """Return the time and the named quantities with their labels; default: all quantities in the file."""
+        if quantities is None:
+            return list(self._items.values())
+        names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+        for name in names:
+            self.quantity(name)
+        return [self._items["t"], *(self._items[name] for name in names if name != "t")]
+
+
+def load(path: str | Path) -> SavedTrajectory:
+    """Return the trajectory in an NPZ file that ``trajectory.save`` or ``symrot run --out`` wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    SavedTrajectory
+        The samples with their labels, and the events with theirs.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or if it is another kind of file.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = symrot.propagate("t_handle").save(f"{folder}/motion.npz")
+    ...     symrot.load(f"{folder}/motion.npz").omega.shape
+    (2401, 3)
+    """
+    try:
+        refuse_special(Path(path))
+        if not zipfile.is_zipfile(path):
+            raise ValueError("it is no archive of arrays")
+        with np.load(path, allow_pickle=False) as content:
+            return _saved(content)
+    except UNREADABLE as reason:
+        why = getattr(reason, "strerror", None) or str(reason) or type(reason).__name__
+        _refuse(path, why.partition("\n")[0])
+
+
+def _refuse(path: str | Path, why: str) -> NoReturn:
+    raise InputError(
+        f"load: expected an NPZ file written by trajectory.save or symrot run --out, got {str(path)!r} ({why})"
+    )
+
+
+def _saved(content: Any) -> SavedTrajectory:
+    if not hasattr(content, "files") or "metadata" not in content.files:
+        raise ValueError("it has no metadata of symrot")
+    metadata = json.loads(str(content["metadata"]))
+    saved = SavedTrajectory(metadata, _items(content, metadata, str))
+    if not isinstance(saved.metadata["status"], int) or None in saved._about:
+        raise ValueError("its metadata are damaged")
+    for number, event in enumerate(metadata["events"], start=1):
+        states = SavedTrajectory(metadata, _items(content, metadata, lambda name, k=number: event_array(k, name)))
+        saved.at_events.append(states)
+        saved.event_kinds.append(list(event["kinds"]))
+    return saved
+
+
+def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
+    """Return the quantities in a file with their labels; raise ValueError if an array does not fit its description."""
+    items = []
+    for name, entry in metadata["arrays"].items():
+        values, components = content[array(name)], tuple(map(str, entry["components"]))
+        if values.dtype.kind not in "fb" or values.ndim < 1 or math.prod(values.shape[1:]) != len(components):
+            raise ValueError(f"its array {array(name)!r} does not have {len(components)} numbers in each row")
+        items.append(Labelled(name, values, components, entry["unit"], entry["frame"], entry["meaning"]))
+    if {len(item.values) for item in items} != {len(items[0].values)} or "t" not in metadata["arrays"]:
+        raise ValueError("its arrays have different numbers of rows")
+    return items
