@@ -30,6 +30,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"closed_form", "propagation"},
     {"ensemble"},
     {"viewer"},
+    {"figures"},
     {"report"},
     {"workshop"},
     {"bench"},

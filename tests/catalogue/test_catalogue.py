@@ -18,6 +18,7 @@ from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.workshop import derivation_pages
 
 ROOT = Path(__file__).parents[2]
 
@@ -48,7 +49,7 @@ def derived():
 
 @pytest.fixture(scope="module")
 def printed():
-    return catalogue.pages()
+    return derivation_pages.pages()
 
 
 def test_the_reading_order_names_every_file_once():
@@ -150,25 +151,30 @@ def test_what_the_planner_and_the_docstrings_cite_exists():
 def test_the_committed_pages_are_current(printed):
     """If this test fails, run `symrot derive --all`."""
     directory = ROOT / "derivations"
-    assert {path.name for path in directory.glob("*.md")} == set(printed)
+    files = [*directory.glob("*.md"), *directory.glob("figures/*")]
+    assert {path.relative_to(directory).as_posix() for path in files} == set(printed)
     for name, text in printed.items():
         assert (directory / name).read_bytes() == text.encode(), name
 
 
 def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monkeypatch):
-    monkeypatch.setattr(catalogue, "pages", lambda say: printed)
-    assert len(catalogue.derive_all(tmp_path)) == len(printed)
-    assert catalogue.check(tmp_path) == [] and catalogue.derive_all(tmp_path) == []
+    monkeypatch.setattr(derivation_pages, "pages", lambda say: printed)
+    assert len(derivation_pages.derive_all(tmp_path)) == len(printed)
+    assert derivation_pages.check(tmp_path) == [] and derivation_pages.derive_all(tmp_path) == []
     (tmp_path / "spherical_body.md").write_text(printed["spherical_body.md"].replace("**1.** The", "**1.** No"))
     (tmp_path / "planar_motion.md").unlink()
     (tmp_path / "old.md").write_text("Derived long ago, printed by `symrot derive old`; do not edit.\n")
     (tmp_path / "mine.md").write_text("My own notes.\n")
-    stale = dict(catalogue.check(tmp_path))
+    stale = dict(derivation_pages.check(tmp_path))
     assert {path.name for path in stale} == {"spherical_body.md", "planar_motion.md", "old.md"}
     assert "\n-**1.** No tensor" in stale[tmp_path / "spherical_body.md"]
     assert "\n+**1.** The tensor" in stale[tmp_path / "spherical_body.md"]
-    assert {path.name for path in catalogue.derive_all(tmp_path)} == {path.name for path in stale}
-    assert catalogue.check(tmp_path) == [] and (tmp_path / "mine.md").exists() and not (tmp_path / "old.md").exists()
+    assert {path.name for path in derivation_pages.derive_all(tmp_path)} == {path.name for path in stale}
+    assert (
+        derivation_pages.check(tmp_path) == []
+        and (tmp_path / "mine.md").exists()
+        and not (tmp_path / "old.md").exists()
+    )
 
 
 def test_a_page_does_not_depend_on_hashing(derived, printed):
@@ -181,7 +187,7 @@ def test_a_page_does_not_depend_on_hashing(derived, printed):
     environment = os.environ | {"PYTHONHASHSEED": "20"}
     command = [sys.executable, "-c", program, *SPREAD]
     pages = subprocess.run(command, env=environment, capture_output=True, check=True).stdout.decode()
-    here = "".join(printed[f"{name}.md"] for name in SPREAD)
+    here = "".join(derived[name].markdown() for name in SPREAD)
     here += "".join(derived[name].html() + derived[name].part(2, True).markdown() for name in SPREAD)
     assert pages == here
 
@@ -220,7 +226,7 @@ def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
         for target in re.findall(r'href="([^"#]+)"', path.read_text()):
             assert (tmp_path / "site" / target).exists(), (path.name, target)
     with pytest.raises(InputError, match=r"latex or html, got 'pdf'"):
-        catalogue.write_pages(tmp_path, "pdf")
+        derivation_pages.write_pages(tmp_path, "pdf")
 
 
 def test_links_lead_to_pages(printed):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
-from symrot.proof.page import Page, Section, Step
+from symrot.proof.page import Figure, Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["html_document"]
@@ -30,6 +30,9 @@ mover > mo { padding-bottom: 0.12em; }
 .number { font-weight: bold; margin-right: 0.4em; }
 .remarks { color: #555; color: color-mix(in srgb, currentColor 75%, transparent); font-size: 0.97rem; }
 .source { font-size: 0.97rem; }
+figure { margin: 1.6rem 0; text-align: center; break-inside: avoid; }
+figure svg { max-width: 100%; height: auto; }
+figcaption { font-size: 0.95rem; text-align: left; margin-top: 0.4rem; }
 .whole { white-space: nowrap; }
 code { font-size: 0.9em; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
@@ -59,6 +62,8 @@ def html_document(page: Page) -> str:
                 f"{_display(equation(item))}\n"
                 f'<p class="remarks">{_prose(" ".join(remarks(item)))}</p>\n</section>'
             )
+        elif isinstance(item, Figure):
+            parts.append(f"<figure>{item.svg()}<figcaption>{_prose(item.caption)}</figcaption></figure>")
         else:
             parts.append(f"<p>{_prose(item.text)}</p>")
             parts += [_display(text) for text in passage_equations(item)]
