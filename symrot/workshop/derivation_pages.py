@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from difflib import unified_diff
 from pathlib import Path
+from textwrap import wrap
 
 from symrot.catalogue import READING_ORDER, derivation, names
 from symrot.errors import InputError
@@ -13,11 +14,18 @@ from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
 from symrot.proof.derivation import PrintedPage
 from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.pages import book
 
 __all__ = ["check", "derive_all", "illustrated", "pages", "write_pages"]
 
-SUFFIXES = {"latex": ".tex", "html": ".html"}
-"""Format of a page, other than Markdown -> suffix of its file."""
+Chapters = dict[str, list[PrintedPage]]
+"""Chapter -> its pages, in reading order."""
+
+TITLE = "Derivations"
+ABOUT = (
+    "Every formula that symrot computes with, from first principles, in reading order. Each step was proven when its "
+    "page was printed: the exact normal form of left minus right is zero."
+)
 
 CONVERTER = "rsvg-convert"
 """The program that converts SVG to PDF for LaTeX; without it, LaTeX prints the caption of a figure alone."""
@@ -69,10 +77,9 @@ def pages(say: Say = _quiet) -> dict[str, str]:
         say(f"deriving {name} ..")
         derived[name] = illustrated(derivation(name))
     lines = [
-        "# Derivations",
+        f"# {TITLE}",
         "",
-        "Every formula that symrot computes with, from first principles, in reading order. Each step was proven when",
-        "its page was printed: the exact normal form of left minus right is zero.",
+        *wrap(ABOUT, 110, break_on_hyphens=False),
     ]
     for part, members in READING_ORDER.items():
         lines += ["", f"## {part}", ""]
@@ -87,9 +94,10 @@ def _figures(page: Page) -> list[Figure]:
 
 
 def write_pages(directory: Path | str, form: str) -> list[Path]:
-    """Write every derivation as LaTeX or HTML into a directory, one file each, and return the paths.
+    """Write all derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
 
-    With LaTeX, figures are written as PDF into the folder ``figures`` if the program :data:`CONVERTER` is installed.
+    The book begins with ``index.html``. With LaTeX, figures are written as PDF into the
+    folder ``figures`` if the program :data:`CONVERTER` is installed.
 
     Parameters
     ----------
@@ -103,19 +111,34 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
     InputError
         For an unknown format.
     """
-    if form not in SUFFIXES:
-        raise InputError(f"form: expected {' or '.join(SUFFIXES)}, got {form!r}")
+    if form not in FORMS:
+        raise InputError(f"form: expected {' or '.join(FORMS)}, got {form!r}")
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
+    chapters = {
+        chapter: [illustrated(derivation(name)) for name in members] for chapter, members in READING_ORDER.items()
+    }
     written = []
-    for name in names():
-        path = directory / f"{name}{SUFFIXES[form]}"
-        page = illustrated(derivation(name))
-        path.write_bytes(getattr(page, form)().encode())
+    for name, text in FORMS[form](chapters).items():
+        path = directory / name
+        path.write_bytes(text.encode())
         written.append(path)
-        if form == "latex" and shutil.which(CONVERTER):
-            written += _converted(directory, _figures(page))
+    if form == "latex" and shutil.which(CONVERTER):
+        figures = [figure for members in chapters.values() for page in members for figure in _figures(page)]
+        written += _converted(directory, figures)
     return written
+
+
+def _html(chapters: Chapters) -> dict[str, str]:
+    return book(TITLE, ABOUT, chapters)
+
+
+def _latex(chapters: Chapters) -> dict[str, str]:
+    return {f"{page.name}.tex": page.latex() for members in chapters.values() for page in members}
+
+
+FORMS: dict[str, Callable[[Chapters], dict[str, str]]] = {"latex": _latex, "html": _html}
+"""Format of all pages, other than Markdown -> function from the pages of each chapter to the texts of the files."""
 
 
 def _converted(directory: Path, figures: list[Figure]) -> list[Path]:

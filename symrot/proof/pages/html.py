@@ -4,14 +4,14 @@ A derivation always gives the same bytes.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
 from symrot.proof.page import Figure, Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
-__all__ = ["html_document"]
+__all__ = ["display", "document", "html_document", "prose"]
 
 MANY_SECTIONS = 3
 
@@ -21,7 +21,8 @@ body { max-width: 46rem; margin: 2rem auto; padding: 0 1rem; font: 1.05rem/1.55 
 h1 { font-size: 1.9rem; line-height: 1.2; margin-bottom: 0.4rem; }
 h2 { font-size: 1.35rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: 0.2rem; }
 nav { font-size: 0.95rem; }
-math { font-size: 1.05em; }
+math { font-size: 1.05em; font-family: "STIX Two Math", "Latin Modern Math", "STIX Math", "Cambria Math",
+  "TeX Gyre Termes Math", "DejaVu Math TeX Gyre", math; }
 mover > mo { padding-bottom: 0.12em; }
 .display { overflow-x: auto; overflow-y: hidden; margin: 0.8rem 0; padding: 0.3rem 0; }
 .display math { margin: 0 auto; }
@@ -41,46 +42,52 @@ a { color: inherit; }
 """
 
 
-def html_document(page: Page) -> str:
-    """Return a page as a self-contained HTML document."""
-    parts = [f"<h1>{_prose(page.title)}</h1>"]
+def html_document(page: Page, top: str = "", bottom: str = "", style: str = "") -> str:
+    """Return a page as a self-contained HTML document, with HTML above and below it and further rules of its style."""
+    parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     if page.about:
-        parts.append(f"<p>{_prose(page.about)}</p>")
+        parts.append(f"<p>{prose(page.about)}</p>")
     if page.source:
-        parts.append(f'<p class="source"><em>Source:</em> {_prose(page.source)}.</p>')
+        parts.append(f'<p class="source"><em>Source:</em> {prose(page.source)}.</p>')
     parts += _contents(page)
     number, section = page.first - 1, 0
     for item in page.items:
         if isinstance(item, Section):
             section += 1
-            parts.append(f'<h2 id="section-{section}">{_prose(item.title)}</h2>')
+            parts.append(f'<h2 id="section-{section}">{prose(item.title)}</h2>')
         elif isinstance(item, Step):
             number += 1
             parts.append(
                 f'<section class="step" id="step-{number}">\n'
-                f'<p><span class="number">{number}.</span>{_prose(item.claim)}</p>\n'
-                f"{_display(equation(item))}\n"
-                f'<p class="remarks">{_prose(" ".join(remarks(item)))}</p>\n</section>'
+                f'<p><span class="number">{number}.</span>{prose(item.claim)}</p>\n'
+                f"{display(equation(item))}\n"
+                f'<p class="remarks">{prose(" ".join(remarks(item)))}</p>\n</section>'
             )
         elif isinstance(item, Figure):
-            parts.append(f"<figure>{item.svg()}<figcaption>{_prose(item.caption)}</figcaption></figure>")
+            parts.append(f"<figure>{item.svg()}<figcaption>{prose(item.caption)}</figcaption></figure>")
         else:
-            parts.append(f"<p>{_prose(item.text)}</p>")
-            parts += [_display(text) for text in passage_equations(item)]
+            parts.append(f"<p>{prose(item.text)}</p>")
+            parts += [display(text) for text in passage_equations(item)]
     used = units(page)
     if used:
-        parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(_prose(used))}.</p>")
-    parts.append(f"<footer>{_prose(footer(page))}</footer>")
-    title = escape(re.sub(r"[$*`]", "", page.title))
+        parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(prose(used))}.</p>")
+    parts.append(f"<footer>{prose(footer(page))}</footer>")
+    return document(page.title, [*parts, *filter(None, [bottom])], style)
+
+
+def document(title: str, parts: Iterable[str], style: str = "") -> str:
+    """Return a self-contained HTML document with a title, the parts of its body, and further rules of its style."""
+    title = escape(re.sub(r"[$*`]", "", title))
     head = (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>"
+        f"<title>{title}</title>\n<style>{STYLE}{style}</style>\n</head>\n<body>"
     )
     return "\n".join([head, *parts, "</body>", "</html>"]) + "\n"
 
 
-def _display(latex: str) -> str:
+def display(latex: str) -> str:
+    """Return a LaTeX formula as HTML on a line of its own."""
     return f'<div class="display">{mathml(latex, display=True)}</div>'
 
 
@@ -92,14 +99,14 @@ def _raised(prose: str) -> str:
 def _contents(page: Page) -> Iterator[str]:
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
-        links = (f'<a href="#section-{n}">{_prose(title)}</a>' for n, title in enumerate(titles, 1))
+        links = (f'<a href="#section-{n}">{prose(title)}</a>' for n, title in enumerate(titles, 1))
         yield f"<nav>{' · '.join(links)}</nav>"
 
 
 PIECES = re.compile(r"\$`([^`]+)`\$|\$([^$]+)\$|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\)|\*\*([^*]+)\*\*|\*([^*]+)\*")
 
 
-def _prose(text: str) -> str:
+def prose(text: str) -> str:
     """Return Markdown prose as HTML: formulas, code, links to other derivations, emphasis."""
     markup, place = "", 0
     for match in PIECES.finditer(text):
@@ -115,10 +122,10 @@ def _prose(text: str) -> str:
         elif code:
             markup += f"<code>{escape(code, quote=False)}</code>"
         elif label:
-            markup += f'<a href="{escape(target.removesuffix(".md"))}.html">{_prose(label)}</a>'
+            markup += f'<a href="{escape(target.removesuffix(".md"))}.html">{prose(label)}</a>'
         elif strong:
-            markup += f"<strong>{_prose(strong)}</strong>"
+            markup += f"<strong>{prose(strong)}</strong>"
         else:
-            markup += f"<em>{_prose(emphasis)}</em>"
+            markup += f"<em>{prose(emphasis)}</em>"
         place = match.end()
     return markup + escape(text[place:], quote=False)
