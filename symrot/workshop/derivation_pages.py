@@ -14,7 +14,7 @@ from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
 from symrot.proof.derivation import PrintedPage
 from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages import book
+from symrot.proof.pages import book, math_font
 
 __all__ = ["check", "derive_all", "illustrated", "pages", "write_pages"]
 
@@ -119,9 +119,9 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
         chapter: [illustrated(derivation(name)) for name in members] for chapter, members in READING_ORDER.items()
     }
     written = []
-    for name, text in FORMS[form](chapters).items():
+    for name, content in FORMS[form](chapters).items():
         path = directory / name
-        path.write_bytes(text.encode())
+        path.write_bytes(content)
         written.append(path)
     if form == "latex" and shutil.which(CONVERTER):
         figures = [figure for members in chapters.values() for page in members for figure in _figures(page)]
@@ -129,16 +129,20 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
     return written
 
 
-def _html(chapters: Chapters) -> dict[str, str]:
-    return book(TITLE, ABOUT, chapters)
+def _html(chapters: Chapters) -> dict[str, bytes]:
+    return _encoded(book(TITLE, ABOUT, chapters)) | {math_font.FILE: math_font.content()}
 
 
-def _latex(chapters: Chapters) -> dict[str, str]:
-    return {f"{page.name}.tex": page.latex() for members in chapters.values() for page in members}
+def _latex(chapters: Chapters) -> dict[str, bytes]:
+    return _encoded({f"{page.name}.tex": page.latex() for members in chapters.values() for page in members})
 
 
-FORMS: dict[str, Callable[[Chapters], dict[str, str]]] = {"latex": _latex, "html": _html}
-"""Format of all pages, other than Markdown -> function from the pages of each chapter to the texts of the files."""
+def _encoded(texts: dict[str, str]) -> dict[str, bytes]:
+    return {name: text.encode() for name, text in texts.items()}
+
+
+FORMS: dict[str, Callable[[Chapters], dict[str, bytes]]] = {"latex": _latex, "html": _html}
+"""Format of all pages, other than Markdown -> function from the pages of each chapter to the contents of the files."""
 
 
 def _converted(directory: Path, figures: list[Figure]) -> list[Path]:

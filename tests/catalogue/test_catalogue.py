@@ -18,6 +18,7 @@ from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
 
 ROOT = Path(__file__).parents[2]
@@ -204,6 +205,8 @@ def test_all_is_printed_as_html_that_is_well_formed(derived):
             '<meta name="viewport" content="width=device-width, initial-scale=1">', ""))  # fmt: skip
         assert len(tree.findall(".//section")) == len(found.steps), name
         assert "http" not in page.replace("http://www.w3.org/1998/Math/MathML", ""), name
+        formulas = {text for element in tree.iter() if "}m" in element.tag for text in element.itertext()}
+        assert set("".join(formulas)) - {"\n"} <= characters(), name
         text = "".join(tree.itertext())
         assert "\\" not in text and "$" not in text, name
 
@@ -222,8 +225,8 @@ def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
     assert main(["derive", "--all", "--format", "html", "-o", str(tmp_path / "site")]) == 0
     files = {path.name for path in (tmp_path / "site").iterdir()}
     assert len(capsys.readouterr().out.split()) == len(files)
-    assert files == {f"{name}.html" for name in derived} | {"index.html", "search.js"}
-    for path in (tmp_path / "site").iterdir():
+    assert files == {f"{name}.html" for name in derived} | {"index.html", "search.js", "math.woff2"}
+    for path in (tmp_path / "site").glob("*.html"):
         for target in re.findall(r'href="([^"#]+)"', path.read_text()):
             assert (tmp_path / "site" / target).exists(), (path.name, target)
     with pytest.raises(InputError, match=r"latex or html, got 'pdf'"):

@@ -2,11 +2,13 @@
 
 import json
 import re
+from base64 import b64decode
 
 import pytest
 
 from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages import book
+from symrot.proof.pages import book, html_document
+from symrot.proof.pages.math_font import content
 
 
 class Drawing:
@@ -72,3 +74,10 @@ def test_the_book_needs_no_network(texts):
 
 def test_a_figure_is_inside_its_page(texts):
     assert "<figure><svg><title>A disk</title>" in texts["disk.html"] and "<figcaption>A disk of" in texts["disk.html"]
+
+
+def test_the_font_is_beside_the_book_and_inside_a_single_page(texts):
+    assert all('url("math.woff2")' in text for name, text in texts.items() if name.endswith(".html"))
+    alone = html_document(Page("spin", "Spin"))
+    data = re.search(r'url\("data:font/woff2;base64,([^"]+)"\)', alone)[1]
+    assert b64decode(data) == content() and content()[:4] == b"wOF2"

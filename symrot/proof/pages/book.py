@@ -10,6 +10,7 @@ from html import unescape
 
 from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages.html import document, html_document, prose
+from symrot.proof.pages.math_font import FILE, face
 
 __all__ = ["CONTENTS", "SEARCH", "book"]
 
@@ -74,6 +75,7 @@ def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict
     -------
     dict
         The contents (:data:`CONTENTS`), the script that searches (:data:`SEARCH`), and ``NAME.html`` for each page.
+        They expect the font file of :mod:`symrot.proof.pages.math_font` beside them.
 
     Examples
     --------
@@ -86,7 +88,7 @@ def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict
         before, after = pages[place - 1] if place else None, pages[place + 1] if place + 1 < len(pages) else None
         turning = _turning(before, after)
         bottom = "\n".join([*_mentions(page, pages), turning, FORM])
-        texts[f"{page.name}.html"] = html_document(page, turning, bottom, STYLE)
+        texts[f"{page.name}.html"] = html_document(page, turning, bottom, STYLE, FILE)
     return texts
 
 
@@ -98,7 +100,7 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
         links = (f'<li><a href="{page.name}.html">{prose(page.title)}</a>, {_steps(page)}</li>' for page in pages)
         parts += [f"<h2>{prose(chapter)}</h2>", f'<ol start="{number}">', *links, "</ol>"]
         number += len(pages)
-    return document(title, [*parts, f'<script src="{SEARCH}"></script>'], STYLE)
+    return document(title, [*parts, f'<script src="{SEARCH}"></script>'], face(FILE) + STYLE)
 
 
 def _steps(page: Page) -> str:

@@ -9,6 +9,7 @@ from html import escape
 
 from symrot.proof.notation.mathml import mathml
 from symrot.proof.page import Figure, Page, Section, Step
+from symrot.proof.pages.math_font import face
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["display", "document", "html_document", "prose"]
@@ -42,8 +43,11 @@ a { color: inherit; }
 """
 
 
-def html_document(page: Page, top: str = "", bottom: str = "", style: str = "") -> str:
-    """Return a page as a self-contained HTML document, with HTML above and below it and further rules of its style."""
+def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
+    """Return a page as an HTML document, with HTML above and below it and further rules of its style.
+
+    It is self-contained unless ``font`` is the address of the mathematical font.
+    """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     if page.about:
         parts.append(f"<p>{prose(page.about)}</p>")
@@ -72,7 +76,7 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "") 
     if used:
         parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(prose(used))}.</p>")
     parts.append(f"<footer>{prose(footer(page))}</footer>")
-    return document(page.title, [*parts, *filter(None, [bottom])], style)
+    return document(page.title, [*parts, *filter(None, [bottom])], face(font) + style)
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:
