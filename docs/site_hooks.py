@@ -11,8 +11,8 @@ from typing import Any
 from symrot.proof.notation.mathml import mathml
 
 ROOT = Path(__file__).parents[1]
-ADDED = ("CONTRIBUTING.md", "CHANGELOG.md", "derivations/*.md", "generated/errata.md", "generated/*.png",
-         "generated/bench/suite.md", "generated/bench/*.png")  # fmt: skip
+ADDED = ("CONTRIBUTING.md", "CHANGELOG.md", "derivations/*.md", "derivations/figures/*.svg", "generated/errata.md",
+         "generated/*.png", "generated/bench/suite.md", "generated/bench/*.png")  # fmt: skip
 DISPLAY = re.compile(r"^\$\$\n(.*?)\n\$\$$", re.DOTALL | re.MULTILINE)
 INLINE = re.compile(r"\$`([^`]+)`\$|\$([^$\n]+)\$")
 

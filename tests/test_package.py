@@ -31,6 +31,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"closed_form", "propagation"},
     {"ensemble"},
     {"viewer"},
+    {"figures"},
     {"report"},
     {"workshop"},
     {"bench"},
@@ -173,7 +174,7 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     held = {str(path.relative_to(unpacked_wheel)) for path in unpacked_wheel.rglob("*") if path.is_file()}
     wanted = {
         str(path.relative_to(ROOT))
-        for suffix in ("py", "pyi", "toml", "c", "h", "typed")
+        for suffix in ("py", "pyi", "toml", "c", "h", "typed", "woff2")
         for path in PACKAGE.rglob(f"*.{suffix}")
     }
     assert wanted <= held

@@ -221,6 +221,7 @@ def _emit(options: Namespace) -> int:
 
 def _derive(options: Namespace) -> int:
     from symrot import catalogue
+    from symrot.workshop import derivation_pages
 
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
@@ -233,23 +234,23 @@ def _derive(options: Namespace) -> int:
     if options.format != "markdown" and options.all:
         if options.directory is None:
             raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
-        say(str(path) for path in catalogue.write_pages(options.directory, options.format))
+        say(str(path) for path in derivation_pages.write_pages(options.directory, options.format))
         return OK
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
             raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
-        different = catalogue.check(directory, progress)
+        different = derivation_pages.check(directory, progress)
         progress("")
         sys.stdout.write("".join(diff for _, diff in different))
         return FAILED if different else OK
     if options.all:
-        written = catalogue.derive_all(directory, progress)
+        written = derivation_pages.derive_all(directory, progress)
         progress("")
         say(str(path) for path in written)
     elif options.name:
         whole = catalogue.derivation(options.name)
-        page = whole if options.step is None else whole.part(options.step, options.detail)
+        page = derivation_pages.illustrated(whole) if options.step is None else whole.part(options.step, options.detail)
         sys.stdout.write(PAGES[options.format](page))
     else:
         say(catalogue.names())

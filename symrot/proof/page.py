@@ -1,11 +1,13 @@
 """Pages of derivations as data: headings, passages and proven steps, for the printers."""
 
+import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from sympy import Expr
 
-__all__ = ["Page", "Passage", "Section", "Step"]
+__all__ = ["Drawing", "Figure", "Page", "Passage", "Section", "Step"]
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,52 @@ class Step:
     printed: tuple[bool, bool] = (True, True)
 
 
+class Drawing(Protocol):
+    """Drawing that can be written as SVG."""
+
+    def svg(self, title: str, description: str) -> str:
+        """Return the drawing as a document of SVG with its title and its description."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Figure on a page, drawn when its SVG is asked for.
+
+    Attributes
+    ----------
+    name : str
+        The name of its file, without ``.svg``.
+    title : str
+        What it shows, in a few words without formulas.
+    caption : str
+        Sentences below the figure; formulas are LaTeX between ``$``.
+    draw : callable
+        Returns the drawing.
+    section : str
+        The title of the section that it opens; empty for the top of the page.
+    """
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[], Drawing]
+    section: str = ""
+
+    @property
+    def file(self) -> str:
+        """The place of its file, relative to the page."""
+        return f"figures/{self.name}.svg"
+
+    @property
+    def description(self) -> str:
+        """The caption as plain words, for readers of screens."""
+        return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
+
+    def svg(self) -> str:
+        """Return the figure as a document of SVG."""
+        return self.draw().svg(self.title, self.description)
+
+
 @dataclass
 class Page:
     """Page of a derivation: assumptions, and the consequences that follow from them step by step.
@@ -89,7 +137,7 @@ class Page:
     about : str
         One paragraph about the subject and its use.
     items : list
-        Headings, passages and steps, in order.
+        Headings, passages, steps and figures, in order.
     first : int
         The number of the first step; not 1 on a page with a part of a derivation.
     file : str
@@ -100,7 +148,7 @@ class Page:
     title: str
     source: str = ""
     about: str = ""
-    items: list[Section | Passage | Step] = field(default_factory=list)
+    items: list[Section | Passage | Step | Figure] = field(default_factory=list)
     first: int = 1
     file: str = ""
 

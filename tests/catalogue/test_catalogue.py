@@ -18,6 +18,8 @@ from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.pages.math_font import characters
+from symrot.workshop import derivation_pages
 
 ROOT = Path(__file__).parents[2]
 
@@ -48,7 +50,7 @@ def derived():
 
 @pytest.fixture(scope="module")
 def printed():
-    return catalogue.pages()
+    return derivation_pages.pages()
 
 
 def test_the_reading_order_names_every_file_once():
@@ -150,25 +152,30 @@ def test_what_the_planner_and_the_docstrings_cite_exists():
 def test_the_committed_pages_are_current(printed):
     """If this test fails, run `symrot derive --all`."""
     directory = ROOT / "derivations"
-    assert {path.name for path in directory.glob("*.md")} == set(printed)
+    files = [*directory.glob("*.md"), *directory.glob("figures/*")]
+    assert {path.relative_to(directory).as_posix() for path in files} == set(printed)
     for name, text in printed.items():
         assert (directory / name).read_bytes() == text.encode(), name
 
 
 def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monkeypatch):
-    monkeypatch.setattr(catalogue, "pages", lambda say: printed)
-    assert len(catalogue.derive_all(tmp_path)) == len(printed)
-    assert catalogue.check(tmp_path) == [] and catalogue.derive_all(tmp_path) == []
+    monkeypatch.setattr(derivation_pages, "pages", lambda say: printed)
+    assert len(derivation_pages.derive_all(tmp_path)) == len(printed)
+    assert derivation_pages.check(tmp_path) == [] and derivation_pages.derive_all(tmp_path) == []
     (tmp_path / "spherical_body.md").write_text(printed["spherical_body.md"].replace("**1.** The", "**1.** No"))
     (tmp_path / "planar_motion.md").unlink()
     (tmp_path / "old.md").write_text("Derived long ago, printed by `symrot derive old`; do not edit.\n")
     (tmp_path / "mine.md").write_text("My own notes.\n")
-    stale = dict(catalogue.check(tmp_path))
+    stale = dict(derivation_pages.check(tmp_path))
     assert {path.name for path in stale} == {"spherical_body.md", "planar_motion.md", "old.md"}
     assert "\n-**1.** No tensor" in stale[tmp_path / "spherical_body.md"]
     assert "\n+**1.** The tensor" in stale[tmp_path / "spherical_body.md"]
-    assert {path.name for path in catalogue.derive_all(tmp_path)} == {path.name for path in stale}
-    assert catalogue.check(tmp_path) == [] and (tmp_path / "mine.md").exists() and not (tmp_path / "old.md").exists()
+    assert {path.name for path in derivation_pages.derive_all(tmp_path)} == {path.name for path in stale}
+    assert (
+        derivation_pages.check(tmp_path) == []
+        and (tmp_path / "mine.md").exists()
+        and not (tmp_path / "old.md").exists()
+    )
 
 
 def test_a_page_does_not_depend_on_hashing(derived, printed):
@@ -181,7 +188,7 @@ def test_a_page_does_not_depend_on_hashing(derived, printed):
     environment = os.environ | {"PYTHONHASHSEED": "20"}
     command = [sys.executable, "-c", program, *SPREAD]
     pages = subprocess.run(command, env=environment, capture_output=True, check=True).stdout.decode()
-    here = "".join(printed[f"{name}.md"] for name in SPREAD)
+    here = "".join(derived[name].markdown() for name in SPREAD)
     here += "".join(derived[name].html() + derived[name].part(2, True).markdown() for name in SPREAD)
     assert pages == here
 
@@ -198,6 +205,8 @@ def test_all_is_printed_as_html_that_is_well_formed(derived):
             '<meta name="viewport" content="width=device-width, initial-scale=1">', ""))  # fmt: skip
         assert len(tree.findall(".//section")) == len(found.steps), name
         assert "http" not in page.replace("http://www.w3.org/1998/Math/MathML", ""), name
+        formulas = {text for element in tree.iter() if "}m" in element.tag for text in element.itertext()}
+        assert set("".join(formulas)) - {"\n"} <= characters(), name
         text = "".join(tree.itertext())
         assert "\\" not in text and "$" not in text, name
 
@@ -214,13 +223,14 @@ def test_all_is_printed_as_latex_with_balanced_braces(derived):
 
 def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
     assert main(["derive", "--all", "--format", "html", "-o", str(tmp_path / "site")]) == 0
-    assert len(capsys.readouterr().out.split()) == len(derived)
-    assert {path.name for path in (tmp_path / "site").iterdir()} == {f"{name}.html" for name in derived}
-    for path in (tmp_path / "site").iterdir():
+    files = {path.name for path in (tmp_path / "site").iterdir()}
+    assert len(capsys.readouterr().out.split()) == len(files)
+    assert files == {f"{name}.html" for name in derived} | {"index.html", "search.js", "math.woff2"}
+    for path in (tmp_path / "site").glob("*.html"):
         for target in re.findall(r'href="([^"#]+)"', path.read_text()):
             assert (tmp_path / "site" / target).exists(), (path.name, target)
     with pytest.raises(InputError, match=r"latex or html, got 'pdf'"):
-        catalogue.write_pages(tmp_path, "pdf")
+        derivation_pages.write_pages(tmp_path, "pdf")
 
 
 def test_links_lead_to_pages(printed):

@@ -13,6 +13,7 @@ import pytest
 import symrot
 from symrot.cli import main as cli
 from symrot.workshop import kernel_files as kernels
+from symrot.workshop.derivation_pages import illustrated
 from tests.bad_scenes import bad_scenes
 
 ROOT = Path(symrot.__file__).parents[1]
@@ -207,8 +208,9 @@ def test_stale_kernels_are_shown_as_a_diff(capsys, monkeypatch, tmp_path):
 def test_derivations_are_listed_and_printed(capsys):
     names = run(capsys, "derive")[1].split()
     assert "parallel_axis" in names
-    assert run(capsys, "derive", "parallel_axis")[1] == symrot.derivation("parallel_axis").markdown()
-    assert run(capsys, "derive", "parallel_axis", "--format", "latex")[1] == symrot.derivation("parallel_axis").latex()
+    page = illustrated(symrot.derivation("parallel_axis"))
+    assert run(capsys, "derive", "parallel_axis")[1] == page.markdown()
+    assert run(capsys, "derive", "parallel_axis", "--format", "latex")[1] == page.latex()
 
 
 def test_doctor_compiles_and_tells_of_a_broken_compiler(capsys, monkeypatch, tmp_path):

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
-from symrot.proof.page import Page, Section, Step
+from symrot.proof.page import Figure, Page, Section, Step
+from symrot.proof.pages.math_font import face
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["display", "document", "html_document", "prose"]
@@ -31,6 +32,9 @@ mover > mo { padding-bottom: 0.12em; }
 .number { font-weight: bold; margin-right: 0.4em; }
 .remarks { color: #555; color: color-mix(in srgb, currentColor 75%, transparent); font-size: 0.97rem; }
 .source { font-size: 0.97rem; }
+figure { margin: 1.6rem 0; text-align: center; break-inside: avoid; }
+figure svg { max-width: 100%; height: auto; }
+figcaption { font-size: 0.95rem; text-align: left; margin-top: 0.4rem; }
 .whole { white-space: nowrap; }
 code { font-size: 0.9em; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
@@ -39,9 +43,12 @@ a { color: inherit; }
 """
 
 
-def html_document(page: Page) -> str:
-    """Return a page as a self-contained HTML document."""
-    parts = [f"<h1>{prose(page.title)}</h1>"]
+def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
+    """Return a page as an HTML document, with HTML above and below it and further rules of its style.
+
+    It is self-contained unless ``font`` is the address of the mathematical font.
+    """
+    parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     if page.about:
         parts.append(f"<p>{prose(page.about)}</p>")
     if page.source:
@@ -60,6 +67,8 @@ def html_document(page: Page) -> str:
                 f"{display(equation(item))}\n"
                 f'<p class="remarks">{prose(" ".join(remarks(item)))}</p>\n</section>'
             )
+        elif isinstance(item, Figure):
+            parts.append(f"<figure>{item.svg()}<figcaption>{prose(item.caption)}</figcaption></figure>")
         else:
             parts.append(f"<p>{prose(item.text)}</p>")
             parts += [display(text) for text in passage_equations(item)]
@@ -67,7 +76,7 @@ def html_document(page: Page) -> str:
     if used:
         parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(prose(used))}.</p>")
     parts.append(f"<footer>{prose(footer(page))}</footer>")
-    return document(page.title, parts)
+    return document(page.title, [*parts, *filter(None, [bottom])], face(font) + style)
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:

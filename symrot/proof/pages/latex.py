@@ -3,7 +3,7 @@
 import re
 
 from symrot.proof.notation.mathml import rows
-from symrot.proof.page import Page, Section, Step
+from symrot.proof.page import Figure, Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["latex_document"]
@@ -43,6 +43,8 @@ def latex_document(page: Page) -> str:
                 rf"\paragraph{{{number}.}} {_prose(item.claim)}" + f"\n{_display(equation(item))}\n"
                 + _prose(" ".join(remarks(item)))
             )  # fmt: skip
+        elif isinstance(item, Figure):
+            parts.append(_figure(item))
         else:
             parts.append("\n".join([_prose(item.text), *map(_display, passage_equations(item))]))
     used = units(page)
@@ -50,6 +52,13 @@ def latex_document(page: Page) -> str:
         parts.append(rf"\paragraph{{Units}} of the symbols in the proofs: {_prose(used)}.")
     parts += [r"\medskip\hrule\medskip", _prose(footer(page)), r"\end{document}"]
     return "\n\n".join(parts) + "\n"
+
+
+def _figure(figure: Figure) -> str:
+    """Return a figure in LaTeX, printed where its file was converted to PDF, with its caption in any case."""
+    path = figure.file.removesuffix(".svg")
+    included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
+    return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
 
 
 def _display(latex: str) -> str:

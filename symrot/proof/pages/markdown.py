@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from symrot.proof.page import Page, Section, Step
+from symrot.proof.page import Figure, Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["display", "host_safe", "markdown"]
@@ -26,6 +26,8 @@ def markdown(page: Page) -> str:
         elif isinstance(item, Step):
             number += 1
             parts += [f"**{number}.** {item.claim}", display(equation(item)), " ".join(remarks(item))]
+        elif isinstance(item, Figure):
+            parts += [f"![{item.title}]({item.file})", f"*Figure:* {item.caption}"]
         else:
             parts.append(item.text)
             parts += [display(text) for text in passage_equations(item)]

@@ -1,0 +1,158 @@
+"""Printer of all pages as a book in HTML: contents in reading order, links between pages, and a search.
+
+The book needs no network and no server: its pages open from a folder. The same pages always give the same bytes.
+"""
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from html import unescape
+
+from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.pages.html import document, html_document, prose
+from symrot.proof.pages.math_font import FILE, face
+
+__all__ = ["CONTENTS", "SEARCH", "book"]
+
+CONTENTS, SEARCH = "index.html", "search.js"
+
+STYLE = """
+nav.book { display: flex; flex-wrap: wrap; gap: 0.2rem 1.5rem; justify-content: space-between; margin: 1rem 0; }
+form { margin: 1rem 0; }
+input { font: inherit; max-width: 100%; }
+#results li { margin: 0.5rem 0; }
+#results small { display: block; }
+@media print { nav.book, form { display: none; } }
+"""
+
+SCRIPT = """\
+"use strict";
+const field = document.querySelector("input[name=q]");
+const list = document.getElementById("results");
+const count = document.getElementById("count");
+const MOST = 60;
+
+function search() {
+  const words = field.value.toLowerCase().split(/\\s+/).filter(Boolean);
+  const hits = words.length === 0 ? [] :
+    ENTRIES.filter(([, title, text]) => words.every((word) => (title + " " + text).toLowerCase().includes(word)));
+  list.replaceChildren(...hits.slice(0, MOST).map(([target, title, text]) => {
+    const item = document.createElement("li");
+    const link = document.createElement("a");
+    const words = document.createElement("small");
+    link.href = target;
+    link.textContent = title;
+    words.textContent = text;
+    item.append(link, words);
+    return item;
+  }));
+  count.textContent = words.length === 0 ? "" :
+    `${hits.length} ${hits.length === 1 ? "place" : "places"}` + (hits.length > MOST ? `, the first ${MOST}:` : "");
+}
+
+field.value = new URLSearchParams(location.search).get("q") || "";
+field.addEventListener("input", search);
+search();
+"""
+
+FORM = (
+    f'<form action="{CONTENTS}" role="search"><label>Search the book: '
+    '<input type="search" name="q" autocomplete="off"></label></form>'
+)
+
+
+def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict[str, str]:
+    """Return file name -> text of a book.
+
+    Parameters
+    ----------
+    title, about : str
+        The title of the book, and a paragraph for the page of contents.
+    chapters : mapping of str to sequence of Page
+        Title of a chapter -> its pages, in reading order.
+
+    Returns
+    -------
+    dict
+        The contents (:data:`CONTENTS`), the script that searches (:data:`SEARCH`), and ``NAME.html`` for each page.
+        They expect the font file of :mod:`symrot.proof.pages.math_font` beside them.
+
+    Examples
+    --------
+    >>> sorted(book("Mechanics", "All of it.", {"First": [Page("spin", "Spin")]}))
+    ['index.html', 'search.js', 'spin.html']
+    """
+    pages = [page for members in chapters.values() for page in members]
+    texts = {CONTENTS: _contents(title, about, chapters), SEARCH: _search(pages)}
+    for place, page in enumerate(pages):
+        before, after = pages[place - 1] if place else None, pages[place + 1] if place + 1 < len(pages) else None
+        turning = _turning(before, after)
+        bottom = "\n".join([*_mentions(page, pages), turning, FORM])
+        texts[f"{page.name}.html"] = html_document(page, turning, bottom, STYLE, FILE)
+    return texts
+
+
+def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> str:
+    form = FORM.replace("</form>", '</form>\n<p id="count" aria-live="polite"></p>\n<ol id="results"></ol>')
+    parts = [f"<h1>{prose(title)}</h1>", f"<p>{prose(about)}</p>", form]
+    number = 1
+    for chapter, pages in chapters.items():
+        links = (f'<li><a href="{page.name}.html">{prose(page.title)}</a>, {_steps(page)}</li>' for page in pages)
+        parts += [f"<h2>{prose(chapter)}</h2>", f'<ol start="{number}">', *links, "</ol>"]
+        number += len(pages)
+    return document(title, [*parts, f'<script src="{SEARCH}"></script>'], face(FILE) + STYLE)
+
+
+def _steps(page: Page) -> str:
+    count = len(page.steps)
+    return f"{count} {'step' if count == 1 else 'steps'}"
+
+
+def _turning(before: Page | None, after: Page | None) -> str:
+    """Return links to the page before, the contents and the page after."""
+    back = f'<a rel="prev" href="{before.name}.html">← {prose(before.title)}</a>' if before else "<span></span>"
+    on = f'<a rel="next" href="{after.name}.html">{prose(after.title)} →</a>' if after else "<span></span>"
+    return f'<nav class="book">{back}<a href="{CONTENTS}">Contents</a>{on}</nav>'
+
+
+def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
+    """Yield a paragraph with links to the pages that refer to a page, if there are any."""
+    link = f"]({page.name}.md)"
+    others = [other for other in pages if other is not page and any(link in text for _, _, text in _words(other))]
+    if others:
+        links = ", ".join(f'<a href="{other.name}.html">{prose(other.title)}</a>' for other in others)
+        yield f"<p>Pages that refer to this one: {links}.</p>"
+
+
+def _words(page: Page) -> Iterator[tuple[str, str, str]]:
+    """Yield the place of each text of a page (after ``#``), its title, and the text, as Markdown."""
+    yield "", page.title, page.about
+    number, sections = page.first - 1, 0
+    heading = page.title
+    for item in page.items:
+        if isinstance(item, Section):
+            sections += 1
+            heading = f"{page.title}: {item.title}"
+            yield f"#section-{sections}", heading, ""
+        elif isinstance(item, Step):
+            number += 1
+            yield f"#step-{number}", f"{heading}, step {number}", f"{item.claim} Why: {item.reason}."
+        elif isinstance(item, Figure):
+            yield "", f"{heading}, figure", f"{item.title}. {item.caption}"
+        elif isinstance(item, Passage):
+            yield f"#section-{sections}" if sections else "", heading, item.text
+
+
+def _plain(text: str) -> str:
+    """Return Markdown as text without markup; formulas keep their letters."""
+    return unescape(re.sub(r"<[^>]*>", "", prose(text)))
+
+
+def _search(pages: Sequence[Page]) -> str:
+    entries = [
+        [f"{page.name}.html{place}", _plain(title), _plain(text)]
+        for page in pages
+        for place, title, text in _words(page)
+    ]
+    lines = ",\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
+    return f"const ENTRIES = [\n{lines}\n];\n\n{SCRIPT}"

@@ -1,0 +1,210 @@
+"""Pages of derivations with their figures: printed, written to a folder, and compared with the files there."""
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import fields
+from difflib import unified_diff
+from pathlib import Path
+from textwrap import wrap
+
+from symrot.catalogue import READING_ORDER, derivation, names
+from symrot.errors import InputError
+from symrot.figures.table import figures_of
+from symrot.files.reading import refuse_special
+from symrot.proof.derivation import PrintedPage
+from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.pages import book, math_font
+
+__all__ = ["check", "derive_all", "illustrated", "pages", "write_pages"]
+
+Chapters = dict[str, list[PrintedPage]]
+"""Chapter -> its pages, in reading order."""
+
+TITLE = "Derivations"
+ABOUT = (
+    "Every formula that symrot computes with, from first principles, in reading order. Each step was proven when its "
+    "page was printed: the exact normal form of left minus right is zero."
+)
+
+CONVERTER = "rsvg-convert"
+"""The program that converts SVG to PDF for LaTeX; without it, LaTeX prints the caption of a figure alone."""
+
+Say = Callable[[str], object]
+"""Hears what is being derived."""
+
+
+def _quiet(text: str) -> None:
+    """Ignore a message about progress; this is the default for the parameter ``say``."""
+
+
+def illustrated(page: Page) -> PrintedPage:
+    """Return a page with its figures, each at the top of the page or below the heading of its section.
+
+    Raises
+    ------
+    InputError
+        If a figure names a section that the page does not have.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> page = illustrated(symrot.derivation("poinsot"))
+    >>> [item.name for item in page.items if isinstance(item, Figure)][0]
+    'poinsot'
+    """
+    by_section: dict[str, list[Figure]] = {}
+    for figure in figures_of(page.name):
+        by_section.setdefault(figure.section, []).append(figure)
+    items: list[Section | Passage | Step | Figure] = [*by_section.pop("", ())]
+    for item in page.items:
+        items.append(item)
+        if isinstance(item, Section):
+            items += by_section.pop(item.title, ())
+    if by_section:
+        raise InputError(f"{page.name}: expected figures in sections of the page, got the sections {[*by_section]}")
+    values = {each.name: getattr(page, each.name) for each in fields(Page)}
+    return PrintedPage(**values | {"items": items})
+
+
+def pages(say: Say = _quiet) -> dict[str, str]:
+    """Return a map from file name to text of the printed pages of all derivations, and of their figures.
+
+    The table of contents (``README.md``) comes first.
+    """
+    derived = {}
+    for name in names():
+        say(f"deriving {name} ..")
+        derived[name] = illustrated(derivation(name))
+    lines = [
+        f"# {TITLE}",
+        "",
+        *wrap(ABOUT, 110, break_on_hyphens=False),
+    ]
+    for part, members in READING_ORDER.items():
+        lines += ["", f"## {part}", ""]
+        lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
+    lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
+    texts = {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
+    return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}
+
+
+def _figures(page: Page) -> list[Figure]:
+    return [item for item in page.items if isinstance(item, Figure)]
+
+
+def write_pages(directory: Path | str, form: str) -> list[Path]:
+    """Write all derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
+
+    The book begins with ``index.html``. With LaTeX, figures are written as PDF into the
+    folder ``figures`` if the program :data:`CONVERTER` is installed.
+
+    Parameters
+    ----------
+    directory : Path or str
+        The directory, which is created if it does not exist.
+    form : str
+        ``"latex"`` or ``"html"``.
+
+    Raises
+    ------
+    InputError
+        For an unknown format.
+    """
+    if form not in FORMS:
+        raise InputError(f"form: expected {' or '.join(FORMS)}, got {form!r}")
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    chapters = {
+        chapter: [illustrated(derivation(name)) for name in members] for chapter, members in READING_ORDER.items()
+    }
+    written = []
+    for name, content in FORMS[form](chapters).items():
+        path = directory / name
+        path.write_bytes(content)
+        written.append(path)
+    if form == "latex" and shutil.which(CONVERTER):
+        figures = [figure for members in chapters.values() for page in members for figure in _figures(page)]
+        written += _converted(directory, figures)
+    return written
+
+
+def _html(chapters: Chapters) -> dict[str, bytes]:
+    return _encoded(book(TITLE, ABOUT, chapters)) | {math_font.FILE: math_font.content()}
+
+
+def _latex(chapters: Chapters) -> dict[str, bytes]:
+    return _encoded({f"{page.name}.tex": page.latex() for members in chapters.values() for page in members})
+
+
+def _encoded(texts: dict[str, str]) -> dict[str, bytes]:
+    return {name: text.encode() for name, text in texts.items()}
+
+
+FORMS: dict[str, Callable[[Chapters], dict[str, bytes]]] = {"latex": _latex, "html": _html}
+"""Format of all pages, other than Markdown -> function from the pages of each chapter to the contents of the files."""
+
+
+def _converted(directory: Path, figures: list[Figure]) -> list[Path]:
+    """Convert figures to PDF, and return the paths of the files."""
+    paths = []
+    for figure in figures:
+        path = (directory / figure.file).with_suffix(".pdf")
+        path.parent.mkdir(exist_ok=True)
+        command = [CONVERTER, "--format", "pdf", "--output", str(path)]
+        subprocess.run(command, input=figure.svg().encode(), check=True)
+        paths.append(path)
+    return paths
+
+
+def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
+    """Print every page and every figure into a directory and return the paths of the files that changed.
+
+    Pages and figures that are no longer in the catalogue are deleted; other files are not touched.
+    """
+    directory = Path(directory)
+    (directory / "figures").mkdir(parents=True, exist_ok=True)
+    changed = []
+    printed = pages(say)
+    for name, text in printed.items():
+        path = directory / name
+        if not path.is_file() or path.read_bytes() != text.encode():
+            if path.exists():
+                refuse_special(path)  # a pipe would wait for a reader
+            path.write_bytes(text.encode())
+            changed.append(path)
+    for path in _left_over(directory, printed):
+        path.unlink()
+        changed.append(path)
+    return changed
+
+
+def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
+    """Return a unified diff for each page or figure in a directory that differs from the newly printed one.
+
+    The list is empty if all files are up to date.
+    """
+    directory = Path(directory)
+    printed = pages(say)
+    stale = []
+    for path in [*(directory / name for name in printed), *_left_over(directory, printed)]:
+        old = path.read_bytes().decode(errors="replace") if path.is_file() else ""
+        new = printed.get(path.relative_to(directory).as_posix(), "")
+        if old != new:
+            lines = unified_diff(
+                old.splitlines(keepends=True), new.splitlines(keepends=True), f"{path} (on disk)", f"{path} (derived)"
+            )
+            stale.append((path, "".join(lines)))
+    return stale
+
+
+def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
+    """Return the pages and figures in a directory that symrot printed earlier and that no longer exist."""
+    files = [*sorted(directory.glob("*.md")), *sorted(directory.glob("figures/*.svg"))]
+    others = (path for path in files if path.relative_to(directory).as_posix() not in printed and path.is_file())
+    return [path for path in others if _mark(path).encode() in path.read_bytes()]
+
+
+def _mark(path: Path) -> str:
+    """Return the words by which a file is known to have been printed by symrot."""
+    return 'class="sf" role="img"' if path.suffix == ".svg" else f"printed by `symrot derive {path.stem}`; do not edit."
