@@ -11,6 +11,10 @@ from symrot.ensemble.ensemble import Ensemble, EnsembleStats, propagate_ensemble
 from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Counterexample
+from symrot.exercises.exercise import Datum, Equation, Exercise, Question
+from symrot.exercises.grading.grade import grade
+from symrot.exercises.grading.mark import Grades, Mark
+from symrot.exercises.sheet import ExerciseSheet, exercise
 from symrot.inertia.solids import Solid, solid
 from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
 from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
@@ -52,14 +56,19 @@ __all__ = [
     "CertificateError",
     "CompilerError",
     "Counterexample",
+    "Datum",
     "Derivation",
     "Diagnosis",
     "Dimensions",
     "Emitted",
     "Ensemble",
     "EnsembleStats",
+    "Equation",
     "EulerRateMatrix",
     "Event",
+    "Exercise",
+    "ExerciseSheet",
+    "Grades",
     "Identification",
     "Initial",
     "InputError",
@@ -67,12 +76,14 @@ __all__ = [
     "LargestBox",
     "Limit",
     "LockedPoint",
+    "Mark",
     "Output",
     "OutputError",
     "Plan",
     "ProofError",
     "PropagationError",
     "Propagator",
+    "Question",
     "RateMatrix",
     "RefusedClaims",
     "Repair",
@@ -102,7 +113,9 @@ __all__ = [
     "derivation",
     "emit",
     "euler_equations",
+    "exercise",
     "explain",
+    "grade",
     "identify",
     "kernel_names",
     "largest_box",

@@ -24,6 +24,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"dynamics"},
     {"catalogue", "textbook", "scene"},
     {"checker"},
+    {"exercises"},
     {"planning", "kernels"},
     {"codegen", "build"},
     {"certificates"},

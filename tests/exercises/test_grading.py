@@ -1,0 +1,55 @@
+"""Grading: right in every form, wrong answers never right, and the kind of error named."""
+
+from fractions import Fraction
+
+import pytest
+
+import symrot
+
+ROD = symrot.exercise("rod_about_end", seed=0)[0]  # m = 3 kg, L = 2 m: 4 kg m^2
+
+
+@pytest.mark.parametrize("answer", [
+    "m*L**2/3", "m L^2/3", "mL²/3", "1/3 m L^2", "m*(L/2)^2 + m*L^2/12", "I_O = m*L^2/3", r"\frac{1}{3} m L^2", r"$I_O = \frac{m L^2}{3}$",
+    "(m L)^2/(3 m)", "L^2/(3/m)",
+])  # fmt: skip
+def test_a_formula_is_right_in_every_form(answer):
+    (mark, _) = symrot.grade(ROD, [answer])
+    assert mark.outcome == "right" and mark.credit == 1, mark
+
+
+@pytest.mark.parametrize("answer, code", [
+    ("m*L^2/6", "factor"), ("-m*L^2/3", "overall_sign"), ("m*L/3", "factor"), ("3/(m*L^2)", "inverse"), ("L*m^2/3", "exchanged"),
+    (r"\frac{m L^2}{6}", "factor"),
+])  # fmt: skip
+def test_a_wrong_formula_gets_part_of_the_credit_and_its_error_is_named(answer, code):
+    (mark, _) = symrot.grade(ROD, [answer])
+    assert mark.outcome == "wrong" and mark.code == code and mark.credit < 1 and mark.text, mark
+
+
+@pytest.mark.parametrize("answer", ["4 kg m^2", "4.00 kg*m^2", "4e0 kg m²", "40000 kg cm^2", r"4\,\mathrm{kg\,m^2}", "8/2 kg m^2", "I_O = 4.0 kg m^2", "4,00 kg m^2", "4 N m s^2", "sqrt(16) kg m^2"])  # fmt: skip
+def test_a_number_is_right_in_other_units_and_ways(answer):
+    mark = symrot.grade(ROD, {"b": answer}).marks[1]
+    assert mark.outcome == "right", mark
+
+
+@pytest.mark.parametrize("answer, code", [
+    ("4", "unit_forgotten"), ("-4 kg m^2", "sign"), ("8 kg m^2", "factor"), ("4000 kg m^2", "power_of_ten"), ("4 kg", "dimension"),
+    ("0.25 kg m^2", "inverse"), ("4.3 kg m^2", "other"),
+])  # fmt: skip
+def test_a_wrong_number_is_told_what_is_wrong(answer, code):
+    mark = symrot.grade(ROD, {"b": answer}).marks[1]
+    assert mark.outcome == "wrong" and mark.code == code and mark.credit < 1 and mark.text, mark
+
+
+@pytest.mark.parametrize(
+    "key, answer", [("a", "m*L^2/"), ("a", "m*l^2/3"), ("a", "a = b = c"), ("b", "four"), ("b", "4 parsec")]
+)
+def test_what_cannot_be_read_gets_no_credit_and_a_sentence(key, answer):
+    mark = next(mark for mark in symrot.grade(ROD, {key: answer}) if mark.key == key)
+    assert mark.outcome == "unread" and mark.credit == Fraction(0) and mark.text.startswith("expected"), mark
+
+
+def test_answers_to_no_question_are_refused():
+    with pytest.raises(symrot.InputError, match="expected the questions a, b, got 'z'"):
+        symrot.grade(ROD, {"z": "1"})
