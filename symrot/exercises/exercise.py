@@ -21,6 +21,9 @@ SCHEMA = 1
 DRAWS = 24
 """The number of draws among which the one with the shortest numbers is used."""
 
+ZERO = 30
+"""The awkwardness of an answer that is zero, which teaches little."""
+
 DIGITS = 17
 SPACE = r"\,"
 
@@ -223,7 +226,8 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
         answers = [asked.formula.xreplace(values) / factor_of(asked.unit) for asked in problem.asked]
         if any(answer.is_finite is False or answer.is_real is False for answer in answers):
             continue
-        length = sum(_length(answer) for answer in answers)
+        repeated = len(drawn) - len({(number, quantity.unit) for quantity, number in drawn})
+        length = sum(_length(answer) for answer in answers) + repeated
         if best is None or length < best[0]:
             best = length, drawn
     if best is None:
@@ -232,9 +236,11 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return a measure of how awkward a number is: its digits as a decimal, and many more if it has no end."""
+    """Return a measure of how awkward a number is: its digits as a decimal, and more if it has no end or is zero."""
+    if answer.is_zero:
+        return ZERO
     if not answer.is_Rational:
-        return 10
+        return 6 + int(answer.count_ops())
     rest, power = answer.q, 0
     for prime in (2, 5):
         while rest % prime == 0:
