@@ -540,8 +540,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return SIGPIPE
     except OSError as error:
         progress("")
-        place = f"{error.filename}: " if error.filename else ""
-        sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
+        place = f"{one_line(str(error.filename))}: " if error.filename else ""
+        sys.stderr.write(f"symrot: {place}{error.strerror or error}\n")
         return USAGE_ERROR
     except KeyboardInterrupt:
         _stop_compilers()

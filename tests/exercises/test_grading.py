@@ -50,6 +50,21 @@ def test_what_cannot_be_read_gets_no_credit_and_a_sentence(key, answer):
     assert mark.outcome == "unread" and mark.credit == Fraction(0) and mark.text.startswith("expected"), mark
 
 
+@pytest.mark.parametrize("template, answer", [
+    ("only_sum_of_angles", r"\cos(\phi+\psi)"), ("only_sum_of_angles", "cos φ cos ψ − sin φ sin ψ"), ("level_precession", "mgh/(C ω_3)"),
+    ("level_precession", r"\frac{m g h}{C \omega_3}"), ("component_of_rotation", "sin(α/2)"), ("separatrix_momentum", "sqrt(2 T B)"),
+])  # fmt: skip
+def test_letters_may_be_greek_latex_or_written_together(template, answer):
+    mark = symrot.grade(symrot.exercise(template)[0], [answer]).marks[0]
+    assert mark.outcome == "right", mark
+
+
+def test_names_with_indices_may_have_braces_or_underscores():
+    exercise = symrot.exercise("angle_between")[0]
+    for answer in ("p_0 q_0 + p_1 q_1 + p_2 q_2 + p_3 q_3", "p_{0} q_{0} + p_{1} q_{1} + p_{2} q_{2} + p_{3} q_{3}"):
+        assert symrot.grade(exercise, [answer]).marks[0].outcome == "right"
+
+
 def test_answers_to_no_question_are_refused():
     with pytest.raises(symrot.InputError, match="expected the questions a, b, got 'z'"):
         symrot.grade(ROD, {"z": "1"})

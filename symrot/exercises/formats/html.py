@@ -58,7 +58,7 @@ def _question(number: int, question: Question) -> str:
             f'<div class="question">{prompt}<details class="answer"><summary>Answer</summary>{answer}</details></div>'
         )
     return (
-        f'<form class="question number" data-question="{name}">{prompt}<p class="entry">'
+        f'<form class="question numeric" data-question="{name}">{prompt}<p class="entry">'
         f'<label for="answer-{name}">Answer</label> <input id="answer-{name}" autocomplete="off" spellcheck="false" '
         f'placeholder="number{" and unit" if question.unit else ""}"> <button>Check</button></p>'
         '<output aria-live="polite"></output></form>'

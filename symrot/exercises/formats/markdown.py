@@ -10,7 +10,7 @@ __all__ = ["data_text", "markdown_sheet"]
 
 def data_text(data: Sequence[Datum]) -> str:
     """Return the numbers of an exercise as a sentence with formulas."""
-    pairs = (f"{each.words} ${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in data)
+    pairs = (f"${each.latex} = {each.value}{unit_latex(each.unit)}$ ({each.words})" for each in data)
     return f"Data: {', '.join(pairs)}." if data else ""
 
 

@@ -107,7 +107,7 @@ function grade(text, question) {
   return ["wrong", "Not right. Try a hint."];
 }
 
-for (const form of document.querySelectorAll("form.number")) {
+for (const form of document.querySelectorAll("form.numeric")) {
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const output = form.querySelector("output");

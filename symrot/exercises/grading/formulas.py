@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 
 from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
@@ -113,7 +114,8 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
         raise InputError(f"expected one formula for ${question.name}$, got {answer[:60]!r}")
     if "\\" in formula:
         return formula, question.latex
-    plain = _plain(formula.translate(_SUBSCRIPTS))
+    bare = re.sub(r"\{([^{}]*)\}", r"\1", re.sub(r"\^\{([^{}]*)\}", r"^(\1)", formula))
+    plain = _plain(bare.translate(_SUBSCRIPTS))
     known = (*question.symbols, *FUNCTIONS)
     plain = _JOINED.sub(lambda match: _split(match, known), plain)
     unknown = sorted({name for name in _NAME.findall(plain) if name not in known})
@@ -137,7 +139,7 @@ def _split(match: re.Match[str], known: Collection[str]) -> str:
     """Return a name, or the product of known names that are written together: ``m*g*l`` for ``mgl``."""
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
-    for single in (name, spelled):
+    for single in (name, spelled, name.replace("_", "")):
         if single in known:
             return f"{divided}{single}{power}"
     product = "*".join(next(_partitions(name, known), (name,))) + power
@@ -155,16 +157,35 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
     """Return the code of the error: the reciprocal, two letters exchanged, or the checker's diagnosis."""
     if "\\" not in own:
-        if _is_right(_verdict(f"1/({own})", truth, question, repair=False)):
+        if _holds(f"1/({own})", truth, question):
             return "inverse"
         if verdict.diagnosis.code in MAYBE_EXCHANGED and _exchanged(own, truth, question):
             return "exchanged"
     code = verdict.diagnosis.code
     if verdict.requires:
         return "requires_condition"
+    if code == "dimension" and "\\" not in own:
+        code = _code_without_units(own, truth, question)
     if code == "dimension" or (code == "none" and _misfit(own, truth, question)):
         return "unit"
     return code
+
+
+def _code_without_units(own: str, truth: str, question: Question) -> str:
+    """Return the diagnosis of a formula whose units do not fit, in letters that have no conventional units."""
+    letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
+    plain = {letters[name]: "1" for name in question.symbols}
+    renamed = replace(question, symbols=plain, positive=tuple(letters[name] for name in question.positive))
+    first, second = (_NAME.sub(lambda match: letters.get(match[0], match[0]), side) for side in (own, truth))
+    return _verdict(first, second, renamed).diagnosis.code
+
+
+def _holds(own: str, truth: str, question: Question) -> bool:
+    """Return whether a changed formula is right; a formula without a value, such as the reciprocal of 0, is not."""
+    try:
+        return _is_right(_verdict(own, truth, question, repair=False))
+    except InputError:
+        return False
 
 
 def _exchanged(own: str, truth: str, question: Question) -> bool:
@@ -174,6 +195,6 @@ def _exchanged(own: str, truth: str, question: Question) -> bool:
         for second in names[place + 1 :]:
             pair = {first: second, second: first}
             exchanged = _NAME.sub(lambda match: pair.get(match[0], match[0]), own)  # noqa: B023
-            if exchanged != own and _is_right(_verdict(exchanged, truth, question, repair=False)):
+            if exchanged != own and _holds(exchanged, truth, question):
                 return True
     return False

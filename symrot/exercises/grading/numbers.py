@@ -1,7 +1,7 @@
 """The grading of a number with its unit."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite, log10, pi, sqrt
@@ -35,7 +35,7 @@ _LATEX = (
 
 _EXPONENT = re.compile(r"(\d)\s*\*\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
 _PLAIN = re.compile(r"[-+]?\s*(\d*\.?\d*)(?:[eE][-+]?\d+)?")
-_FUNCTIONS = {"sqrt": sqrt, "abs": abs}
+_FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
 
 @dataclass(frozen=True)
@@ -141,10 +141,10 @@ def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
             if forgotten
             else Mark(key, answer, "right", RIGHT)
         )
-    if _rounds(value, truth, number.half_digit * scale):
-        return _wrong(key, answer, "coarse", {})
     for code, texts in _faults(value, truth, question):
         return _wrong(key, answer, code, texts)
+    if _rounds(value, truth, number.half_digit * scale):
+        return _wrong(key, answer, "coarse", {})
     return _wrong(key, answer, "other", {})
 
 

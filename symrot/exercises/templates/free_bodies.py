@@ -2,13 +2,14 @@
 
 from random import Random
 
-from sympy import Expr, Matrix, atan, diag, pi, sqrt
+from sympy import Expr, Matrix, Symbol, atan, diag, pi, sqrt
 
 from symrot.dynamics.equations import euler_equations
 from symrot.exercises.problem import Asked, Line, Problem, Quantity, quantity
 from symrot.inertia.solids import solid
-from symrot.symbols import A, B, C, E, H, L, R, omega_1, omega_2, omega_3
+from symrot.symbols import A, B, C, H, L, R, omega_1, omega_2, omega_3
 
+T = Symbol("T", positive=True)  # kinetic energy; the checker takes E for another number
 OMEGA = Matrix((omega_1, omega_2, omega_3))
 TRANSVERSE = quantity(A, "2 3 4 5 6 8 10", "kg m^2", "transverse moment")
 AXIAL = quantity(C, "1 2 3 4 5 6 9 12", "kg m^2", "moment about the axis")
@@ -156,41 +157,41 @@ def _moments() -> tuple[Quantity, ...]:
 def separatrix_momentum(random: Random) -> Problem:
     """The angular momentum on the separatrix for a given energy."""
     energy = B * omega_2**2 / 2
-    formula = sqrt(2 * B * E)
+    formula = sqrt(2 * B * T)
     return Problem(
         "The separatrix of a free body",
-        "A free body with the moments $A > B > C$ has the kinetic energy $E$. Its angular momentum $H$ is such "
+        "A free body with the moments $A > B > C$ has the kinetic energy $T$. Its angular momentum $H$ is such "
         "that it may rotate "
         "steadily about the intermediate axis: this is the separatrix.",
         "Compare the energy and the angular momentum of a rotation about the intermediate axis alone.",
-        (_moments()[1], quantity(E, "2 8 10 18 40 50 90", "J", "kinetic energy")),
+        (_moments()[1], quantity(T, "2 8 10 18 40 50 90", "J", "kinetic energy")),
         (
             Line("For a rotation about the intermediate axis.", (B * omega_2) ** 2, 2 * B * energy, "H^2"),
-            Line("With the energy $E$.", formula, formula, "H"),
+            Line("With the energy $T$.", formula, formula, "H"),
         ),
         (Asked("H", "the angular momentum on the separatrix", formula, "kg m^2/s"),),
-        lambda values: values[E] > 0,
+        lambda values: values[T] > 0,
     )
 
 
 def polhode_constants(random: Random) -> Problem:
     """A component of the angular velocity where the polhode crosses a plane."""
-    square = (2 * A * E - H**2) / (C * (A - C))
-    first = (H**2 - 2 * C * E) / (A * (A - C))
+    square = (2 * A * T - H**2) / (C * (A - C))
+    first = (H**2 - 2 * C * T) / (A * (A - C))
     energy = (A * first + C * square) / 2
     return Problem(
         "Where a polhode crosses a plane",
-        "A free body has the moments $A > B > C$, the kinetic energy $E$ and the angular momentum $H$. At one "
+        "A free body has the moments $A > B > C$, the kinetic energy $T$ and the angular momentum $H$. At one "
         r"moment $\omega_2 = 0$.",
-        r"Two equations are left: $A\omega_1^2 + C\omega_3^2 = 2E$ and $A^2\omega_1^2 + C^2\omega_3^2 = H^2$.",
+        r"Two equations are left: $A\omega_1^2 + C\omega_3^2 = 2T$ and $A^2\omega_1^2 + C^2\omega_3^2 = H^2$.",
         (
             _moments()[0],
             _moments()[2],
-            quantity(E, "20 30 40 50 60", "J", "kinetic energy"),
+            quantity(T, "20 30 40 50 60", "J", "kinetic energy"),
             quantity(H, "12 15 16 18 20 24", "kg m^2/s", "angular momentum"),
         ),
         (
-            Line("The energy of the solution.", energy, E, r"\tfrac12(A\omega_1^2 + C\omega_3^2)"),
+            Line("The energy of the solution.", energy, T, r"\tfrac12(A\omega_1^2 + C\omega_3^2)"),
             Line(
                 "The angular momentum of the solution.",
                 A**2 * first + C**2 * square,
@@ -200,7 +201,7 @@ def polhode_constants(random: Random) -> Problem:
             Line("The square of the component along axis 3.", square, square, r"\omega_3^2"),
         ),
         (Asked(r"\omega_3^2", "the square of the component along the axis of the smallest moment", square, "1/s^2"),),
-        lambda v: 2 * v[C] * v[E] < v[H] ** 2 < 2 * v[A] * v[E],
+        lambda v: 2 * v[C] * v[T] < v[H] ** 2 < 2 * v[A] * v[T],
     )
 
 
@@ -221,8 +222,8 @@ def wobble_period(random: Random) -> Problem:
         ),
         (
             Line("The rate follows from Euler's equations.", rates[1] / omega_1, omega_3 * (C - A) / A, r"\lambda"),
-            Line("One turn, divided by the rate.", 2 * pi * omega_1 / rates[1], period, "T"),
+            Line("One turn, divided by the rate.", 2 * pi * omega_1 / rates[1], period, "P"),
         ),
-        (Asked("T", "the period in the body", period, "s"),),
+        (Asked("P", "the period in the body", period, "s"),),
         lambda values: values[A] < values[C],
     )

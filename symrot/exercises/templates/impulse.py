@@ -1,5 +1,6 @@
 """Impulses: blows on free bodies and on pendulums."""
 
+from collections.abc import Mapping
 from random import Random
 
 from sympy import Expr, Symbol, solve
@@ -29,7 +30,7 @@ def _rate() -> Expr:
     return solve(ROD * Omega - J * d, Omega)[0]
 
 
-def _fits(values: dict) -> bool:
+def _fits(values: Mapping[Symbol, Expr]) -> bool:
     return bool(2 * values[d] <= values[L])
 
 

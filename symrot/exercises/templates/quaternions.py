@@ -2,7 +2,7 @@
 
 from random import Random
 
-from sympy import Matrix, cos, sin, sqrt
+from sympy import Matrix, Symbol, cos, sin, sqrt
 
 from symrot.exercises.problem import Asked, Line, Problem, Quantity, quantity
 from symrot.kinematics.quaternion import conjugate, quaternion_product, quaternion_rates, quaternion_to_dcm
@@ -16,7 +16,7 @@ PRODUCT = (
 )
 
 
-def _numbers(symbols: tuple, numbers: str = NUMBERS) -> tuple[Quantity, ...]:
+def _numbers(symbols: tuple[Symbol, ...], numbers: str = NUMBERS) -> tuple[Quantity, ...]:
     return tuple(quantity(symbol, numbers, "", "component") for symbol in symbols)
 
 
@@ -44,7 +44,7 @@ def product(random: Random) -> Problem:
     )
 
 
-def _by_vectors(p: tuple, q: tuple) -> Matrix:
+def _by_vectors(p: tuple[Symbol, ...], q: tuple[Symbol, ...]) -> Matrix:
     """Return the product by scalar and vector parts."""
     u, v = Matrix(p[1:]), Matrix(q[1:])
     return Matrix([p[0] * q[0] - u.dot(v), *(p[0] * v + q[0] * u + u.cross(v))])

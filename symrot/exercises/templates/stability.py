@@ -1,8 +1,9 @@
 """Stability of rotation about the principal axes."""
 
+from collections.abc import Mapping
 from random import Random
 
-from sympy import Expr, Matrix, sqrt
+from sympy import Expr, Matrix, Symbol, sqrt
 
 from symrot.dynamics.equations import euler_equations
 from symrot.exercises.problem import Asked, Line, Problem, quantity
@@ -31,7 +32,7 @@ def _factor(axis: int) -> Expr:
     return (jacobian.subs(steady) ** 2)[0, 0]
 
 
-def _ordered(values: dict) -> bool:
+def _ordered(values: Mapping[Symbol, Expr]) -> bool:
     return bool(values[A] > values[B] > values[C] and values[B] + values[C] > values[A])
 
 
