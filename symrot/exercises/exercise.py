@@ -107,11 +107,16 @@ class Question:
 class Equation:
     """One line of a solution: the reason, and an equation in LaTeX that was proven when the exercise was made.
 
+    Attributes
+    ----------
+    reason : str
+    latex : str
+
     Examples
     --------
     >>> import symrot
     >>> symrot.exercise("rod_about_end")[0].solution[0].reason
-    'The parallel axis theorem, from the centre to the end.'
+    'The parallel axis theorem, from the centre of mass to the axis.'
     """
 
     reason: str

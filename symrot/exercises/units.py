@@ -68,6 +68,9 @@ def unit_latex(unit: str) -> str:
     """Return the LaTeX of a unit: upright, with superscripts for powers, and nothing for a pure number."""
     if unit == "deg":
         return r"^\circ"
+    reciprocal = _RECIPROCAL.match(unit)
+    if reciprocal:
+        unit = f"{reciprocal[1]}^-{reciprocal[2] or 1}"
     upright = re.sub(r"[^\W\d_]+(/[^\W\d_]+)?", lambda match: rf"\mathrm{{{match[0]}}}", unit)
     raised = re.sub(r"\^(-?\d+)", r"^{\1}", upright)
     return r"\," + raised.replace(" ", r"\,") if unit else ""

@@ -55,7 +55,8 @@ def _question(number: int, question: Question) -> str:
     if question.kind == "formula":
         answer = display(f"{question.name} = {question.latex}")
         return (
-            f'<div class="question">{prompt}<details class="answer"><summary>Answer</summary>{answer}</details></div>'
+            f'<div class="question formula">{prompt}'
+            f'<details class="answer"><summary>Answer</summary>{answer}</details></div>'
         )
     return (
         f'<form class="question numeric" data-question="{name}">{prompt}<p class="entry">'

@@ -1,9 +1,10 @@
 """Heavy symmetric tops: steady precession, energy, momenta, sleeping."""
 
+from collections.abc import Mapping
 from functools import cache
 from random import Random
 
-from sympy import Expr, Matrix, Poly, cancel, cos, diag, pi, sin, solve, sqrt
+from sympy import Expr, Matrix, Poly, Symbol, cancel, cos, diag, oo, pi, sin, solve, sqrt
 
 from symrot.exact import normal_form
 from symrot.exercises.problem import Asked, Line, Problem, Quantity, quantity
@@ -15,10 +16,10 @@ ABOUT = (
     "of mass. Its moments about "
     r"this point are $A$ across the axis and $C$ about it."
 )
-MASS = quantity(m, "0.2 0.4 0.5 1 2", "kg", "mass")
-DISTANCE = quantity(h, "30 40 50 60 80 100", "mm", "distance of the centre of mass")
+MASS = quantity(m, "0.2 0.4 0.5", "kg", "mass")
+DISTANCE = quantity(h, "30 40 50 60 80", "mm", "distance of the centre of mass")
 GRAVITY = quantity(g, "9.81", "m/s^2", "gravity")
-TRANSVERSE = quantity(A, "0.001 0.002 0.004 0.005", "kg m^2", "transverse moment")
+TRANSVERSE = quantity(A, "0.002 0.003 0.004 0.005", "kg m^2", "transverse moment")
 AXIAL = quantity(C, "0.0004 0.0005 0.0008 0.001", "kg m^2", "moment about the axis")
 SPIN = quantity(omega_3, "50 80 100 120 200", "rad/s", "rate about the axis")
 ANGLE = quantity(theta, "30 45 60", "deg", "angle to the vertical")
@@ -41,6 +42,12 @@ def _condition() -> Expr:
     kinetic, potential = _lagrangian()
     moment = (kinetic - potential).diff(theta).subs({dtheta: 0, dpsi: omega_3 - dphi * cos(theta)})
     return cancel(normal_form(moment / sin(theta)))
+
+
+def _is_possible(values: Mapping[Symbol, Expr]) -> bool:
+    """Return whether a body may have these moments; that across the axis includes the mass at its distance."""
+    across = values.get(A, oo)
+    return bool(across > values.get(m, 0) * values.get(h, 0) ** 2 + values.get(C, 0) / 2)
 
 
 def _quantities(formula: Expr) -> tuple[Quantity, ...]:
@@ -68,6 +75,7 @@ def spin_for_precession(random: Random) -> Problem:
             Line(r"It is solved for the rate about the axis.", spin, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the rate of rotation about the axis", formula, "rad/s"),),
+        _is_possible,
     )
 
 
@@ -86,6 +94,7 @@ def level_precession(random: Random) -> Problem:
             Line("It is solved for the rate of precession.", rate, formula, r"\dot\phi"),
         ),
         (Asked(r"\dot\phi", "the rate of precession", formula, "rad/s"),),
+        _is_possible,
     )
 
 
@@ -108,6 +117,7 @@ def slowest_spin(random: Random) -> Problem:
             Line("This is the rate.", formula, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the least rate about the axis", formula, "rad/s"),),
+        _is_possible,
     )
 
 
@@ -130,6 +140,7 @@ def sleeping_top(random: Random) -> Problem:
             Line("This is the rate.", formula, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the least rate about the axis at which the top sleeps", formula, "rad/s"),),
+        _is_possible,
     )
 
 
@@ -146,6 +157,7 @@ def momentum_about_vertical(random: Random) -> Problem:
         _quantities(formula),
         (Line("The derivative of the kinetic energy by the rate of precession.", momentum, formula, r"p_\phi"),),
         (Asked(r"p_\phi", "the angular momentum about the vertical", formula, "kg m^2/s"),),
+        _is_possible,
     )
 
 
@@ -164,6 +176,7 @@ def energy_of_top(random: Random) -> Problem:
         _quantities(formula),
         (Line("Kinetic and potential energy.", energy, formula, "E"),),
         (Asked("E", "the total energy", formula, "J"),),
+        _is_possible,
     )
 
 
@@ -186,5 +199,5 @@ def slow_precession(random: Random) -> Problem:
             Line("The smaller root.", root, root, r"\dot\phi"),
         ),
         (Asked(r"\dot\phi", "the slower rate of precession", root, "rad/s"),),
-        lambda v: v[C] ** 2 * v[omega_3] ** 2 > 4 * v[A] * v[m] * v[g] * v[h],
+        lambda v: _is_possible(v) and v[C] ** 2 * v[omega_3] ** 2 > 4 * v[A] * v[m] * v[g] * v[h],
     )
