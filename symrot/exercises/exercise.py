@@ -1,5 +1,6 @@
 """Exercises: a problem with numbers, its questions, its hints in three stages, and its proven solution."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from random import Random
@@ -11,9 +12,10 @@ from symrot.exact.decide import decide
 from symrot.exercises.problem import Asked, Line, Problem, Quantity
 from symrot.exercises.units import decimal, factor_of, unit_latex
 from symrot.proof.derivation import ProofError
-from symrot.proof.notation.printer import PagePrinter, formula
+from symrot.proof.notation.printer import PagePrinter
+from symrot.proof.notation.printer import formula as page_formula
 
-__all__ = ["SCHEMA", "Datum", "Equation", "Exercise", "Question", "make", "sheet_data"]
+__all__ = ["SCHEMA", "Datum", "Equation", "Exercise", "Question", "make", "related", "sheet_data"]
 
 SCHEMA = 1
 """The version of the JSON data of exercises."""
@@ -179,11 +181,16 @@ def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:
     return {"schema": SCHEMA, "exercises": [each.to_json() for each in exercises]}
 
 
+def formula(side: Any) -> str:
+    """Return the LaTeX of a formula, with ``arccos`` for the inverse cosine."""
+    return re.sub(r"\\operatorname\{a(sin|cos|tan)\}", r"\\arc\1", page_formula(side))
+
+
 class _WithNumbers(PagePrinter):
     """A printer that writes the number and unit of a quantity in place of its symbol."""
 
     def __init__(self, data: Mapping[Symbol, str]) -> None:
-        super().__init__({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False})
+        super().__init__({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False, "inv_trig_style": "full"})
         self.data = data
 
     def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
@@ -326,6 +333,11 @@ def _number_latex(exact: Expr, unit: str) -> str:
     return latex + unit_latex(unit)
 
 
+def related(number: str) -> str:
+    r"""Return a number in LaTeX with the sign before it: ``=``, or ``\approx`` for a number that is rounded."""
+    return number if number.startswith(r"\approx") else f"= {number}"
+
+
 def _scientific(text: str) -> str:
     mantissa, _, exponent = text.partition("e")
     return rf"{mantissa} \cdot 10^{{{exponent}}}" if exponent else mantissa
@@ -363,4 +375,6 @@ def _solution(
             exact = _exact(asked, values)
             _prove(template, Line("the number", asked.formula.xreplace(dict(values)), exact * factor_of(asked.unit)))
             numbers = _substituted(asked, drawn)
-            yield Equation("With the numbers.", rf"{asked.name} = {numbers} = {_number_latex(exact, asked.unit)}")
+            yield Equation(
+                "With the numbers.", rf"{asked.name} = {numbers} {related(_number_latex(exact, asked.unit))}"
+            )

@@ -68,3 +68,9 @@ def test_names_with_indices_may_have_braces_or_underscores():
 def test_answers_to_no_question_are_refused():
     with pytest.raises(symrot.InputError, match="expected the questions a, b, got 'z'"):
         symrot.grade(ROD, {"z": "1"})
+
+
+def test_an_inverse_cosine_is_read_as_the_page_prints_it():
+    exercise = symrot.exercise("angle_of_two_rotations")[0]
+    assert r"\arccos" in exercise.questions[0].latex
+    assert symrot.grade(exercise, [exercise.questions[0].latex]).marks[0].outcome == "right"

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from symrot.exercises.exercise import Exercise
+from symrot.exercises.exercise import Exercise, related
 from symrot.exercises.formats.markdown import data_text
 
 __all__ = ["latex_sheet"]
@@ -45,7 +45,7 @@ def latex_sheet(exercises: Sequence[Exercise]) -> str:
     for number, exercise in enumerate(exercises, 1):
         parts.append(rf"\subsection*{{{number}. {prose(exercise.title)}}}")
         parts += [f"{prose(line.reason)}\n\\fitted{{{line.latex}}}" for line in exercise.solution]
-        answers = (f"({each.key}) ${each.name} = {each.latex}$" for each in exercise.questions)
+        answers = (f"({each.key}) ${each.name} {related(each.latex)}$" for each in exercise.questions)
         parts.append(rf"\textbf{{Answers:}} {'; '.join(answers)}.")
     return "\n\n".join([*parts, r"\end{document}"]) + "\n"
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from symrot.exercises.exercise import Datum, Exercise
+from symrot.exercises.exercise import Datum, Exercise, related
 from symrot.exercises.units import unit_latex
 
 __all__ = ["data_text", "markdown_sheet"]
@@ -33,5 +33,5 @@ def markdown_sheet(exercises: Sequence[Exercise]) -> str:
 def _solution(exercise: Exercise) -> Iterator[str]:
     for equation in exercise.solution:
         yield from (equation.reason, "", f"$${equation.latex}$$", "")
-    answers = (f"({question.key}) ${question.name} = {question.latex}$" for question in exercise.questions)
+    answers = (f"({question.key}) ${question.name} {related(question.latex)}$" for question in exercise.questions)
     yield from (f"**Answers:** {'; '.join(answers)}.", "")

@@ -212,7 +212,7 @@ def product_of_triangle(random: Random) -> Problem:
         "The product of inertia of a set square",
         "A thin uniform plate of mass $m$ is a right triangle with the legs $b$ along $x$ and $h$ along $y$. The "
         "origin is at the "
-        "right angle. In this book $I_{xy} = -\\int x y \\, dm$.",
+        "right angle. Here $I_{xy} = -\\int x y \\, dm$.",
         "Use the parallel axis theorem for products, $I_{xy} = I_{C,xy} - m x_C y_C$.",
         (MASS, quantity(b, LENGTHS, "m", "leg"), quantity(h, LENGTHS, "m", "leg")),
         chain(
@@ -235,7 +235,7 @@ def product_of_two_masses(random: Random) -> Problem:
         "Two masses on a plate",
         "A small mass $m_1$ is at the point $(a, b)$ and a small mass $m_2$ at $(-b, c)$ of the $x$-$y$ plane, "
         "about the origin. "
-        "In this book $I_{xy} = -\\sum m x y$.",
+        "Here $I_{xy} = -\\sum m x y$.",
         "Sum $-m x y$ over the masses, with the signs of the coordinates.",
         (
             quantity(m_1, MASSES, "kg", "first mass"),
