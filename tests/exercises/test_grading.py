@@ -59,6 +59,37 @@ def test_letters_may_be_greek_latex_or_written_together(template, answer):
     assert mark.outcome == "right", mark
 
 
+@pytest.mark.parametrize(
+    "answer, credit", [("0", 0), ("4", 0), ("m", Fraction(1, 4)), ("L^2/3", Fraction(1, 4)), ("m L^2", Fraction(1, 2))]
+)
+def test_a_fragment_of_the_answer_gets_little_credit(answer, credit):
+    """Any two products differ by a factor, so that the diagnosis alone would give half of the credit for a letter."""
+    assert symrot.grade(ROD, [answer]).marks[0].credit == credit
+
+
+@pytest.mark.parametrize("answer", [
+    "", "=", "((((", "1/0", "{}", r"\frac{", "m" * 2000, "L**999999", "2^2^2^2^2^2", "sqrt(-m)", "nan", "1e999", "\0", "m\nL", "4 %",
+    "__import__('os')", "\N{GRINNING FACE}",
+])  # fmt: skip
+def test_hostile_answers_get_a_mark_and_no_credit(answer):
+    for mark in symrot.grade(ROD, [answer, answer]):
+        assert mark.outcome in ("unread", "missing", "wrong", "undecided") and mark.credit == 0 and mark.text
+
+
+@pytest.mark.parametrize("answer", ["4kgm^2", "4 kgm²", "4 kg m^2.", "≈4 kg·m²", r"4~\text{kg m}^2"])
+def test_units_may_be_written_as_students_write_them(answer):
+    assert symrot.grade(ROD, {"b": answer}).marks[1].outcome == "right"
+
+
+@pytest.mark.parametrize("answer", [
+    "dpsi - dphi*sin(theta)", "psi_dot - phi_dot sin(theta)", "psidot - phidot*sin theta", "ψ̇ − φ̇ sin θ", r"\dot\psi - \dot\phi\sin\theta",
+])  # fmt: skip
+def test_rates_may_be_written_with_dots_or_as_words(answer):
+    exercise = symrot.exercise("body_rates", seed=4)[0]
+    assert exercise.questions[0].answer == "-dphi*sin(theta) + dpsi"
+    assert symrot.grade(exercise, [answer]).marks[0].outcome == "right"
+
+
 def test_names_with_indices_may_have_braces_or_underscores():
     exercise = symrot.exercise("angle_between")[0]
     for answer in ("p_0 q_0 + p_1 q_1 + p_2 q_2 + p_3 q_3", "p_{0} q_{0} + p_{1} q_{1} + p_{2} q_{2} + p_{3} q_{3}"):

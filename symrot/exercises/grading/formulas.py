@@ -39,12 +39,14 @@ FUNCTIONS = (
     "exp",
     "log",
 )
+LONGEST_PRODUCT = 12
+"""The most letters of a product that is written without signs."""
+
 MAYBE_EXCHANGED = ("none", "two_faults", "dimension")
 """Diagnoses of a formula that may be right with two letters exchanged."""
 
 _NAME = re.compile(r"[^\W\d]\w*")
 _JOINED = re.compile(r"(?P<divided>/\s*)?(?P<name>[^\W\d]\w*)(?P<power>(?:\^|\*\*)\s*\d+)?")
-_DOTTED = ((r"\b(\w+?)_?dot\b", r"d\1"), (r"(\w)\u0307", r"d\1"))
 
 
 def mark_formula(key: str, answer: str, question: Question) -> Mark:
@@ -78,7 +80,10 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
 
 def _misfit(own: str, truth: str, question: Question) -> str:
     """Return how the units of a formula differ from those of the answer, or an empty text."""
-    dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
+    try:
+        dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
+    except InputError:  # LaTeX in which the names of the units do not occur
+        return ""
     if dimension.status != "inconsistent":
         return ""
     return dimension.text.replace("the left side", "the answer").replace("the right side", "your formula")
@@ -126,12 +131,13 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
 
 
 def _plain(text: str) -> str:
-    """Return a text with Greek letters by name, and with rates as names such as ``dphi``."""
+    """Return a text with Greek letters by name, and with names such as ``dphi`` and ``acos``."""
+    text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
     for letter, name in GREEK.items():
+        text = text.replace(f"{letter}\u0307", f" d{name}")
+        text = re.sub(rf"\b{name}_?dot\b", f"d{name}", text)
         text = re.sub(rf"(?<=[^\W_]){letter}", f" {letter}", text).replace(letter, name)
         text = re.sub(rf"{name}(?=[^\W\d_])", f"{name} ", text)
-    for pattern, instead in _DOTTED:
-        text = re.sub(pattern, instead, text)
     return text
 
 
@@ -149,6 +155,8 @@ def _split(match: re.Match[str], known: Collection[str]) -> str:
 def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
     if not name:
         yield ()
+    if len(name) > LONGEST_PRODUCT:
+        return
     for part in sorted(known, key=len, reverse=True):
         if part not in FUNCTIONS and name.startswith(part):
             yield from ((part, *rest) for rest in _partitions(name[len(part) :], known))
@@ -162,6 +170,10 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
         if verdict.diagnosis.code in MAYBE_EXCHANGED and _exchanged(own, truth, question):
             return "exchanged"
     code = verdict.diagnosis.code
+    if "\\" not in own and not _letters(own, question):
+        return "none"
+    if "\\" not in own and code == "factor" and not _letters(truth, question) <= _letters(own, question):
+        return "letter_missing"
     if verdict.requires:
         return "requires_condition"
     if code == "dimension" and "\\" not in own:
@@ -169,6 +181,11 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
     if code == "dimension" or (code == "none" and _misfit(own, truth, question)):
         return "unit"
     return code
+
+
+def _letters(formula: str, question: Question) -> set[str]:
+    """Return the symbols of the exercise that a formula uses."""
+    return {name for name in _NAME.findall(formula) if name in question.symbols}
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:

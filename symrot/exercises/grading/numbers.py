@@ -80,7 +80,8 @@ def _readings(answer: str) -> Iterator[_Number]:
     text = answer.strip()
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
-    text = re.split(r"=", text)[-1].strip()
+    text = re.split(r"=", text)[-1].strip().rstrip(".,;")
+    text = re.sub(r"\s+\^", "^", text)
     text = _EXPONENT.sub(r"\1e\2", text)
     texts = {re.sub(r"(?<=\d),(?=\d)", ".", text): None}
     if re.search(r"(?<=\d),\d{3}(?!\d)", text):

@@ -48,6 +48,7 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "quaternion_product_order": (HALF, "the factors of the quaternion product are in the wrong order"),
     "commutator_order": (HALF, "the factors of a matrix product are in the wrong order"),
     "exchanged": (HALF, "two letters are exchanged"),
+    "letter_missing": (QUARTER, "a letter of the answer is missing"),
     "inverse": (QUARTER, "this is the reciprocal of the answer"),
     "two_faults": (QUARTER, "two things are wrong"),
     "requires_condition": (HALF, "this is right in a special case only"),
