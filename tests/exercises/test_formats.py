@@ -127,3 +127,10 @@ def test_the_page_answers_in_a_browser(tmp_path):
                "--dump-dom", path.as_uri()]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert ">Right.</output>" in html.unescape(done.stdout)
+
+
+@pytest.mark.parametrize("name", ["period_of_rod", "piston_speed"])
+def test_a_sketch_has_a_title_and_the_colour_of_the_text(name):
+    figure = symrot.exercise(name)[0].figure
+    assert fromstring(figure).find("{http://www.w3.org/2000/svg}title").text and 'stroke="currentColor"' in figure
+    assert figure in symrot.exercise(name).html()
