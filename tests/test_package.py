@@ -172,7 +172,7 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     held = {str(path.relative_to(unpacked_wheel)) for path in unpacked_wheel.rglob("*") if path.is_file()}
     wanted = {
         str(path.relative_to(ROOT))
-        for suffix in ("py", "pyi", "toml", "c", "h", "typed")
+        for suffix in ("py", "pyi", "toml", "c", "h", "typed", "css", "js")
         for path in PACKAGE.rglob(f"*.{suffix}")
     }
     assert wanted <= held
