@@ -11,6 +11,10 @@ from symrot.ensemble.ensemble import Ensemble, EnsembleMember, EnsembleStats, pr
 from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Counterexample
+from symrot.exercises.exercise import Datum, Equation, Exercise, Question
+from symrot.exercises.grading.grade import grade
+from symrot.exercises.grading.mark import Grades, Mark
+from symrot.exercises.sheet import ExerciseSheet, exercise
 from symrot.inertia.solids import Solid, solid
 from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
 from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
@@ -56,6 +60,7 @@ __all__ = [
     "CertificateError",
     "CompilerError",
     "Counterexample",
+    "Datum",
     "Derivation",
     "Diagnosis",
     "Dimensions",
@@ -63,8 +68,12 @@ __all__ = [
     "Ensemble",
     "EnsembleMember",
     "EnsembleStats",
+    "Equation",
     "EulerRateMatrix",
     "Event",
+    "Exercise",
+    "ExerciseSheet",
+    "Grades",
     "Identification",
     "Initial",
     "InputError",
@@ -72,12 +81,14 @@ __all__ = [
     "LargestBox",
     "Limit",
     "LockedPoint",
+    "Mark",
     "Output",
     "OutputError",
     "Plan",
     "ProofError",
     "PropagationError",
     "Propagator",
+    "Question",
     "RateMatrix",
     "RefusedClaims",
     "Repair",
@@ -108,7 +119,9 @@ __all__ = [
     "derivation",
     "emit",
     "euler_equations",
+    "exercise",
     "explain",
+    "grade",
     "identify",
     "in_notebook",
     "kernel_names",

@@ -24,6 +24,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"dynamics"},
     {"catalogue", "textbook", "scene"},
     {"checker"},
+    {"exercises"},
     {"planning", "kernels"},
     {"codegen", "build"},
     {"certificates"},
@@ -174,7 +175,7 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     held = {str(path.relative_to(unpacked_wheel)) for path in unpacked_wheel.rglob("*") if path.is_file()}
     wanted = {
         str(path.relative_to(ROOT))
-        for suffix in ("py", "pyi", "toml", "c", "h", "typed", "woff2")
+        for suffix in ("py", "pyi", "toml", "c", "h", "typed", "css", "js", "woff2")
         for path in PACKAGE.rglob(f"*.{suffix}")
     }
     assert wanted <= held

@@ -14,6 +14,7 @@ from typing import Any, NoReturn, TextIO
 
 import symrot
 from symrot.cli import certify as cli_certify
+from symrot.cli import exercises as cli_exercises
 from symrot.cli.output import (
     FAILED,
     INTERRUPTED,
@@ -497,6 +498,7 @@ COMMANDS: dict[str, Command] = {
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
+    **cli_exercises.COMMANDS,
     "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
@@ -584,8 +586,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return SIGPIPE
     except OSError as error:
         progress("")
-        place = f"{error.filename}: " if error.filename else ""
-        sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
+        place = f"{one_line(str(error.filename))}: " if error.filename else ""
+        sys.stderr.write(f"symrot: {place}{error.strerror or error}\n")
         return USAGE_ERROR
     except KeyboardInterrupt:
         _stop_compilers()

@@ -1,0 +1,1 @@
+"""Exercises with proven solutions: templates, random numbers, formats for classes, and the grading of answers."""

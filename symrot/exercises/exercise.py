@@ -1,0 +1,380 @@
+"""Exercises: a problem with numbers, its questions, its hints in three stages, and its proven solution."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from random import Random
+from typing import Any
+
+from sympy import Expr, Rational, Symbol, pi, sstr
+
+from symrot.exact.decide import decide
+from symrot.exercises.problem import Asked, Line, Problem, Quantity
+from symrot.exercises.units import decimal, factor_of, unit_latex
+from symrot.proof.derivation import ProofError
+from symrot.proof.notation.printer import PagePrinter
+from symrot.proof.notation.printer import formula as page_formula
+
+__all__ = ["SCHEMA", "Datum", "Equation", "Exercise", "Question", "make", "related", "sheet_data"]
+
+SCHEMA = 1
+"""The version of the JSON data of exercises."""
+
+DRAWS = 24
+"""The number of draws among which the one with the shortest numbers is used."""
+
+ZERO = 30
+"""The awkwardness of an answer that is zero, which teaches little."""
+
+DIGITS = 17
+SPACE = r"\,"
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A quantity with its number.
+
+    Attributes
+    ----------
+    symbol : str
+        Its letter as answers write it.
+    latex : str
+    value : str
+    unit : str
+    words : str
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.exercise("inertia", count=1)[0].data[0].unit
+    'kg'
+    """
+
+    symbol: str
+    latex: str
+    value: str
+    unit: str
+    words: str
+
+
+@dataclass(frozen=True)
+class Question:
+    """One question of an exercise.
+
+    Attributes
+    ----------
+    key : str
+        Its letter, ``"a"``.
+    kind : str
+        ``"formula"`` or ``"number"``.
+    prompt : str
+        Markdown.
+    name : str
+        The letter of the answer, LaTeX.
+    answer : str
+        The formula, or the exact number in ``unit``, as text.
+    latex : str
+        The answer as LaTeX.
+    decimal : str
+        The number with 17 digits; empty for a formula.
+    unit : str
+    symbols : dict of str to str
+        Symbols that the formula may use, with their units.
+    positive : tuple of str
+        Symbols that are positive.
+    slips : dict of str to str
+        Numbers that follow from a usual mistake: kind of mistake -> number in ``unit``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.exercise("rod_about_end")[0].questions[0].answer
+    'L**2*m/3'
+    """
+
+    key: str
+    kind: str
+    prompt: str
+    name: str
+    answer: str
+    latex: str
+    decimal: str
+    unit: str
+    symbols: dict[str, str]
+    positive: tuple[str, ...]
+    slips: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One line of a solution: the reason, and an equation in LaTeX that was proven when the exercise was made.
+
+    Attributes
+    ----------
+    reason : str
+    latex : str
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.exercise("rod_about_end")[0].solution[0].reason
+    'The parallel axis theorem, from the centre of mass to the axis.'
+    """
+
+    reason: str
+    latex: str
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise.
+
+    Attributes
+    ----------
+    template, topic : str
+    seed : int
+    title, statement : str
+        Markdown.
+    data : tuple of Datum
+    questions : tuple of Question
+    hints : tuple of 3 str
+        Which law; the law as an equation; the equation with numbers.
+    solution : tuple of Equation
+    figure : str
+        SVG, or empty.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.exercise("rod_about_end", seed=3)[0].title
+    'A rod about its end'
+    """
+
+    template: str
+    topic: str
+    seed: int
+    title: str
+    statement: str
+    data: tuple[Datum, ...]
+    questions: tuple[Question, ...]
+    hints: tuple[str, ...]
+    solution: tuple[Equation, ...]
+    figure: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the exercise as JSON data, from which :meth:`from_json` makes it again."""
+        return asdict(self)
+
+    @staticmethod
+    def from_json(data: Mapping[str, Any]) -> "Exercise":
+        """Return the exercise that :meth:`to_json` returned as JSON data."""
+        plain = dict(data)
+        plain["data"] = tuple(Datum(**each) for each in data["data"])
+        plain["questions"] = tuple(Question(**{**q, "positive": tuple(q["positive"])}) for q in data["questions"])
+        plain["hints"] = tuple(data["hints"])
+        plain["solution"] = tuple(Equation(**each) for each in data["solution"])
+        return Exercise(**plain)
+
+
+def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:
+    """Return exercises as JSON data."""
+    return {"schema": SCHEMA, "exercises": [each.to_json() for each in exercises]}
+
+
+def formula(side: Any) -> str:
+    """Return the LaTeX of a formula, with ``arccos`` for the inverse cosine."""
+    return re.sub(r"\\operatorname\{a(sin|cos|tan)\}", r"\\arc\1", page_formula(side))
+
+
+class _WithNumbers(PagePrinter):
+    """A printer that writes the number and unit of a quantity in place of its symbol."""
+
+    def __init__(self, data: Mapping[Symbol, str]) -> None:
+        super().__init__({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False, "inv_trig_style": "full"})
+        self.data = data
+
+    def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
+        return self.data.get(symbol) or super()._print_Symbol(symbol, style)
+
+
+def make(template: str, topic: str, seed: int, problem: Problem, source: Random) -> Exercise:
+    """Return the exercise of a problem: prove its lines, draw its numbers, and compute its answers.
+
+    Raises
+    ------
+    ProofError
+        If a line of the solution does not hold.
+    """
+    for line in problem.lines:
+        _prove(template, line)
+    drawn = _draw(problem, source)
+    values = {quantity.symbol: _si(quantity, number) for quantity, number in drawn}
+    return Exercise(
+        template, topic, seed, problem.title, problem.statement,
+        tuple(Datum(sstr(q.symbol), formula(q.symbol), number, q.unit, q.words) for q, number in drawn),
+        tuple(_questions(problem, values)), _hints(problem, drawn), tuple(_solution(template, problem, drawn, values)),
+        problem.figure,
+    )  # fmt: skip
+
+
+def _prove(template: str, line: Line) -> None:
+    decision = decide(line.left, line.right, line.relations)
+    if decision.verdict != "true":
+        raise ProofError(f"{template}, {line.claim!r} does not hold: left - right = {decision.residual}")
+
+
+def _si(quantity: Quantity, number: str) -> Expr:
+    return Rational(number) * factor_of(quantity.unit)
+
+
+def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
+    """Return a number for each quantity: of several draws that fit, the draw whose answers are shortest."""
+    best: tuple[int, list[tuple[Quantity, str]]] | None = None
+    for _ in range(DRAWS):
+        drawn = [(quantity, source.choice(quantity.numbers)) for quantity in problem.quantities]
+        values = {quantity.symbol: _si(quantity, number) for quantity, number in drawn}
+        if not problem.fits(values):
+            continue
+        answers = [asked.formula.xreplace(values) / factor_of(asked.unit) for asked in problem.asked]
+        if any(answer.is_finite is False or answer.is_real is False for answer in answers):
+            continue
+        repeated = len(drawn) - len({(number, quantity.unit) for quantity, number in drawn})
+        length = sum(_length(answer) for answer in answers) + repeated
+        if best is None or length < best[0]:
+            best = length, drawn
+    if best is None:
+        raise ProofError(f"{problem.title}: none of {DRAWS} draws of numbers fits the problem")
+    return best[1]
+
+
+def _length(answer: Expr) -> int:
+    """Return a measure of how awkward a number is: its digits as a decimal, and more if it has no end or is zero."""
+    if answer.is_zero:
+        return ZERO
+    if not answer.is_Rational:
+        return 6 + int(answer.count_ops())
+    rest, power = answer.q, 0
+    for prime in (2, 5):
+        while rest % prime == 0:
+            rest //= prime
+            power += 1
+    return 8 + len(str(rest)) if rest > 1 else len(str(abs(answer.p)).rstrip("0")) + power // 2
+
+
+def _questions(problem: Problem, values: Mapping[Symbol, Expr]) -> Iterator[Question]:
+    keys = iter("abcdefghijklmnopqrstuvwxyz")
+    units = {sstr(q.symbol): _base_unit(q.unit) for q in problem.quantities}
+    positive = tuple(sstr(q.symbol) for q in problem.quantities if q.symbol.is_positive)
+    for asked in problem.asked:
+        if asked.as_formula:
+            names = ", ".join(f"${formula(symbol)}$" for symbol in _used(problem, asked))
+            yield Question(
+                next(keys), "formula", f"Find ${asked.name}$, {asked.words}, as a formula in {names}.", asked.name,
+                sstr(asked.formula), formula(asked.formula), "", asked.unit, units, positive, {},
+            )  # fmt: skip
+        if asked.as_number:
+            exact = _exact(asked, values)
+            prompt = f"Compute ${asked.name}$, {asked.words}{_in_unit(asked.unit)}."
+            yield Question(
+                next(keys), "number", prompt, asked.name, sstr(exact), _number_latex(exact, asked.unit),
+                decimal(exact, DIGITS), asked.unit, units, positive, dict(_slips(problem, asked, values, exact)),
+            )  # fmt: skip
+
+
+def _in_unit(unit: str) -> str:
+    named = {"": "", "deg": ", in degrees"}
+    return named.get(unit, f", in ${unit_latex(unit).removeprefix(SPACE)}$")
+
+
+def _base_unit(unit: str) -> str:
+    return unit or "1"
+
+
+def _used(problem: Problem, asked: Asked) -> list[Symbol]:
+    """Return the symbols of the problem that the formula uses, in the order of the problem."""
+    return [q.symbol for q in problem.quantities if asked.formula.has(q.symbol)]
+
+
+def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
+    """Return the number that is asked for, in its unit."""
+    return asked.formula.xreplace(dict(values)) / factor_of(asked.unit)
+
+
+def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
+    """Yield the numbers that follow from one quantity used wrongly: as a diameter, in degrees, in its own unit."""
+    for quantity in problem.quantities:
+        symbol = quantity.symbol
+        if not asked.formula.has(symbol):
+            continue
+        for code, value in _misused(quantity, values[symbol]):
+            number = asked.formula.xreplace({**values, symbol: value}) / factor_of(asked.unit)
+            if number.is_finite and number.is_real and number != exact:
+                yield f"{code} {sstr(symbol)}", decimal(number, DIGITS)
+
+
+def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
+    if "radius" in quantity.words:
+        yield "diameter", 2 * value
+    if "diameter" in quantity.words:
+        yield "radius", value / 2
+    if quantity.unit == "deg":
+        yield "degrees", 180 * value / pi
+    elif factor_of(quantity.unit) != 1:
+        yield "unconverted", value / factor_of(quantity.unit)
+
+
+def _number_latex(exact: Expr, unit: str) -> str:
+    """Return the exact number if it is short, and its decimals where it is no short decimal itself."""
+    rounded = decimal(exact)
+    latex = _scientific(rounded)
+    if not exact.is_Rational or Rational(rounded) != exact:
+        text = formula(exact)
+        latex = rf"{text} \approx {latex}" if len(text) < 40 else rf"\approx {latex}"
+    return latex + unit_latex(unit)
+
+
+def related(number: str) -> str:
+    r"""Return a number in LaTeX with the sign before it: ``=``, or ``\approx`` for a number that is rounded."""
+    return number if number.startswith(r"\approx") else f"= {number}"
+
+
+def _scientific(text: str) -> str:
+    mantissa, _, exponent = text.partition("e")
+    return rf"{mantissa} \cdot 10^{{{exponent}}}" if exponent else mantissa
+
+
+def _hints(problem: Problem, drawn: Sequence[tuple[Quantity, str]]) -> tuple[str, str, str]:
+    first = problem.lines[0]
+    asked = problem.asked[0]
+    return (
+        problem.law,
+        f"{first.claim} $${_equation(first)}$$",
+        f"With the numbers: $${asked.name} = {_substituted(asked, drawn)}$$",
+    )
+
+
+def _equation(line: Line) -> str:
+    return f"{line.named or formula(line.left)} = {formula(line.right)}"
+
+
+def _substituted(asked: Asked, drawn: Sequence[tuple[Quantity, str]]) -> str:
+    """Return the formula as LaTeX with numbers and units in place of symbols."""
+    data = {q.symbol: rf"\left({_scientific(number)}{unit_latex(q.unit)}\right)" for q, number in drawn}
+    return str(_WithNumbers(data).doprint(asked.formula))
+
+
+def _solution(
+    template: str, problem: Problem, drawn: Sequence[tuple[Quantity, str]], values: Mapping[Symbol, Expr]
+) -> Iterator[Equation]:
+    for line in problem.lines:
+        yield Equation(line.claim, _equation(line))
+    for asked in problem.asked:
+        if not any(line.named == asked.name and line.right == asked.formula for line in problem.lines):
+            raise ProofError(f"{template}: no line of the solution proves {asked.name} = {asked.formula}")
+        if asked.as_number:
+            exact = _exact(asked, values)
+            _prove(template, Line("the number", asked.formula.xreplace(dict(values)), exact * factor_of(asked.unit)))
+            numbers = _substituted(asked, drawn)
+            yield Equation(
+                "With the numbers.", rf"{asked.name} = {numbers} {related(_number_latex(exact, asked.unit))}"
+            )

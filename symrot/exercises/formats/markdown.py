@@ -1,0 +1,37 @@
+"""Exercises as Markdown: the exercises first, then hints and solutions."""
+
+from collections.abc import Iterator, Sequence
+
+from symrot.exercises.exercise import Datum, Exercise, related
+from symrot.exercises.units import unit_latex
+
+__all__ = ["data_text", "markdown_sheet"]
+
+
+def data_text(data: Sequence[Datum]) -> str:
+    """Return the numbers of an exercise as a sentence with formulas."""
+    pairs = (f"${each.latex} = {each.value}{unit_latex(each.unit)}$ ({each.words})" for each in data)
+    return f"Data: {', '.join(pairs)}." if data else ""
+
+
+def markdown_sheet(exercises: Sequence[Exercise]) -> str:
+    """Return exercises as Markdown."""
+    lines = ["# Exercises", ""]
+    for number, exercise in enumerate(exercises, 1):
+        lines += [f"## {number}. {exercise.title}", "", exercise.statement, "", data_text(exercise.data), ""]
+        lines += [f"- ({question.key}) {question.prompt}" for question in exercise.questions]
+        lines.append("")
+    lines += ["# Hints", ""]
+    for number, exercise in enumerate(exercises, 1):
+        lines += [f"**{number}.**", "", *(f"{stage}. {hint}" for stage, hint in enumerate(exercise.hints, 1)), ""]
+    lines += ["# Solutions", ""]
+    for number, exercise in enumerate(exercises, 1):
+        lines += [f"## Solution of {number}", "", *_solution(exercise)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _solution(exercise: Exercise) -> Iterator[str]:
+    for equation in exercise.solution:
+        yield from (equation.reason, "", f"$${equation.latex}$$", "")
+    answers = (f"({question.key}) ${question.name} {related(question.latex)}$" for question in exercise.questions)
+    yield from (f"**Answers:** {'; '.join(answers)}.", "")

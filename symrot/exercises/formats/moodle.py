@@ -1,0 +1,101 @@
+"""Exercises as Moodle XML: numerical questions with a tolerance and units, and short answers for formulas.
+
+Source: https://docs.moodle.org/en/Moodle_XML_format. Each question of an exercise becomes one question of Moodle.
+"""
+
+from collections.abc import Iterator, Sequence
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from symrot.exercises.exercise import Exercise, Question
+from symrot.exercises.formats.html import drawing, mathjax, solution_html
+from symrot.exercises.formats.markdown import data_text
+
+__all__ = ["moodle_quiz"]
+
+TOLERANCE = 0.005
+"""The largest relative error of a number that Moodle accepts: three significant digits."""
+
+UNIT_PENALTY = "0.1"
+SPELLING = "Write products with * and powers with ^, with one fraction, letters in the order of the alphabet."
+UNMATCHED = (
+    "Moodle compares formulas letter by letter, so an equal formula that is written in another way is not recognised. "
+    "Compare yours with the solution; the command symrot grade decides it."
+)
+
+
+def moodle_quiz(exercises: Sequence[Exercise]) -> str:
+    """Return exercises as an XML document that Moodle imports."""
+    quiz = Element("quiz")
+    for topic in dict.fromkeys(exercise.topic for exercise in exercises):
+        category = SubElement(quiz, "question", type="category")
+        _text(SubElement(category, "category"), f"$course$/symrot/{topic.replace('_', ' ')}")
+        for exercise in (each for each in exercises if each.topic == topic):
+            quiz.extend(_questions(exercise))
+    indent(quiz)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(quiz, encoding="unicode") + "\n"
+
+
+def _questions(exercise: Exercise) -> Iterator[Element]:
+    for question in exercise.questions:
+        kind = "numerical" if question.kind == "number" else "shortanswer"
+        element = Element("question", type=kind)
+        _text(SubElement(element, "name"), f"{exercise.title} ({exercise.template} {exercise.seed}{question.key})")
+        texts = map(_paragraph, (data_text(exercise.data), _prompt(question)))
+        body = "".join((_paragraph(exercise.statement), drawing(exercise), *texts))
+        _text(SubElement(element, "questiontext", format="html"), body)
+        _text(SubElement(element, "generalfeedback", format="html"), solution_html(exercise, mathjax))
+        SubElement(element, "defaultgrade").text = "1"
+        SubElement(element, "penalty").text = "0.1"
+        SubElement(element, "hidden").text = "0"
+        (_number if question.kind == "number" else _formula)(element, question)
+        for hint in exercise.hints:
+            _text(SubElement(element, "hint", format="html"), mathjax(hint))
+        yield element
+
+
+def _prompt(question: Question) -> str:
+    if question.kind == "number":
+        return question.prompt
+    return f"{question.prompt} {SPELLING}"
+
+
+def _number(element: Element, question: Question) -> None:
+    _answer(element, question.decimal, f"{abs(float(question.decimal)) * TOLERANCE:.3g}")
+    if question.unit:
+        units = SubElement(element, "units")
+        unit = SubElement(units, "unit")
+        SubElement(unit, "multiplier").text = "1"
+        SubElement(unit, "unit_name").text = question.unit
+    SubElement(element, "unitgradingtype").text = "0"
+    SubElement(element, "unitpenalty").text = UNIT_PENALTY
+    SubElement(element, "showunits").text = "0" if question.unit else "3"
+    SubElement(element, "unitsleft").text = "0"
+
+
+def _formula(element: Element, question: Question) -> None:
+    SubElement(element, "usecase").text = "1"
+    for text in _spellings(question.answer):
+        _answer(element, text, "")
+    _answer(element, "*", "", "0", UNMATCHED)
+
+
+def _spellings(formula: str) -> tuple[str, ...]:
+    """Return ways to write a formula, without the asterisks that Moodle takes for any text."""
+    powers = formula.replace("**", "^")
+    return tuple(text.replace("*", r"\*") for text in dict.fromkeys((powers, powers.replace(" ", ""))))
+
+
+def _answer(element: Element, value: str, tolerance: str, fraction: str = "100", feedback: str = "") -> None:
+    answer = SubElement(element, "answer", fraction=fraction, format="moodle_auto_format")
+    SubElement(answer, "text").text = value
+    _text(SubElement(answer, "feedback", format="html"), feedback)
+    if tolerance:
+        SubElement(answer, "tolerance").text = tolerance
+
+
+def _paragraph(text: str) -> str:
+    return f"<p>{mathjax(text)}</p>" if text else ""
+
+
+def _text(parent: Element, text: str) -> None:
+    SubElement(parent, "text").text = text

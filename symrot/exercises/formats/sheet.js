@@ -1,0 +1,123 @@
+"use strict";
+// Grades the numbers of a sheet of exercises in the page, without network.
+const { questions, units } = JSON.parse(document.getElementById("questions").textContent);
+const TOLERANCE = 0.005; // three significant digits
+const NAMES = Object.keys(units).sort((a, b) => b.length - a.length);
+const UNIT = new RegExp(`(/?)\\s*(${NAMES.join("|")})(?![A-Za-z])(?:\\^?\\(?(-?\\d+)\\)?)?`, "gy");
+
+/** Return {factor, dimension} of a text such as "kg m^2/s", or null if it is not a unit. */
+function unitOf(text) {
+  let plain = text.trim().replace(/\*\*/g, "^").replace(/[*·⋅()]/g, " ").replace(/²/g, "^2").replace(/³/g, "^3");
+  plain = plain.replace(/⁻¹/g, "^-1").replace(/⁻²/g, "^-2").replace(/^1\s*\//, "/").replace(/°/g, "deg");
+  const divided = /\/\(/.test(text);
+  let place = 0, factor = 1, below = false;
+  const dimension = {};
+  while (place < plain.length) {
+    if (/\s/.test(plain[place])) { place += 1; continue; }
+    UNIT.lastIndex = place;
+    const match = UNIT.exec(plain);
+    if (!match) return null;
+    below = match[1] === "/" || (divided && below);
+    const power = (below ? -1 : 1) * Number(match[3] ?? 1);
+    factor *= units[match[2]].factor ** power;
+    for (const [name, value] of Object.entries(units[match[2]].dimension))
+      dimension[name] = (dimension[name] ?? 0) + value * power;
+    place = UNIT.lastIndex;
+  }
+  for (const name of Object.keys(dimension)) if (!dimension[name]) delete dimension[name];
+  return { factor, dimension };
+}
+
+/** Return [value, rest of the text] of an arithmetic text such as "3/2*sqrt(2)", or null. */
+function arithmetic(text) {
+  let rest = text;
+  const next = (pattern) => {
+    const match = rest.match(pattern);
+    if (match) rest = rest.slice(match[0].length);
+    return match;
+  };
+  const atom = () => {
+    let match = next(/^\s*(\d+(?:[.,]\d*)?|[.,]\d+)(?:(?:[eE]|\s*(?:\*|·|×|x)\s*10\s*(?:\^|\*\*))\s*\(?([+-]?\d+)\)?)?/);
+    if (match) return Number(match[1].replace(",", ".")) * 10 ** Number(match[2] ?? 0);
+    if (next(/^\s*(pi\b|π)/)) return Math.PI;
+    match = next(/^\s*(sqrt|√)?\s*\(/);
+    if (match) {
+      const inside = sum();
+      next(/^\s*\)/);
+      return match[1] ? Math.sqrt(inside) : inside;
+    }
+    return NaN;
+  };
+  const power = () => { const base = atom(); return next(/^\s*(\^|\*\*)(?=\s*[\d.]+)/) ? base ** atom() : base; };
+  const signed = () => (next(/^\s*[-−]/) ? -power() : (next(/^\s*\+/), power()));
+  const product = () => {
+    let value = signed();
+    for (;;) {
+      if (next(/^\s*[*·×](?=\s*([\d.(π√]|pi\b|sqrt))/)) value *= signed();
+      else if (next(/^\s*\/(?=\s*([\d.(π√]|pi\b|sqrt))/)) value /= signed();
+      else return value;
+    }
+  };
+  const sum = () => {
+    let value = product();
+    for (;;) {
+      if (next(/^\s*\+/)) value += product();
+      else if (next(/^\s*[-−]/)) value -= product();
+      else return value;
+    }
+  };
+  const value = sum();
+  return Number.isFinite(value) ? [value, rest] : null;
+}
+
+const near = (a, b) => Math.abs(a - b) <= TOLERANCE * Math.abs(b) || Math.abs(a - b) < 1e-12;
+const same = (a, b) => JSON.stringify(Object.entries(a).sort()) === JSON.stringify(Object.entries(b).sort());
+
+/** Return [class, sentence] on an answer. */
+function grade(text, question) {
+  const number = arithmetic(text.replace(/^[^=]*=/, ""));
+  if (!number) return ["wrong", "This is no number: write for example 0.125, 1.2e-3 or 3/8."];
+  const [value, rest] = number;
+  const unit = rest.trim() ? unitOf(rest) : null;
+  if (rest.trim() && !unit) return ["wrong", `“${rest.trim()}” is no unit that this page knows.`];
+  const truth = Number(question.value);
+  if (unit && !same(unit.dimension, question.dimension))
+    return ["wrong", `The unit does not fit: the answer is in ${question.unit || "no unit, a pure number"}.`];
+  const angle = !unit && question.unit && !Object.keys(question.dimension).length;
+  const answer = unit ? (value * unit.factor) / question.factor : value;
+  if (near(answer, truth)) {
+    if (!unit && question.unit && question.unit !== "rad")
+      return ["partial", `The number is right; write its unit, ${question.unit}.`];
+    return ["right", "Right."];
+  }
+  const slip = question.slips.find(([number]) => near(answer, Number(number)));
+  if (slip) return ["wrong", slip[1]];
+  if (near(-answer, truth)) return ["wrong", "The size is right, the sign is not."];
+  if (angle && near((answer * Math.PI) / 180, truth * question.factor)) return ["wrong", "This is in degrees."];
+  for (const factor of [2, 0.5, 4, 0.25])
+    if (near(answer, factor * truth)) return ["wrong", `A factor of ${factor > 1 ? factor : `1/${1 / factor}`} is too much.`];
+  if (truth && near(answer, (truth * 180) / Math.PI)) return ["wrong", "This is in degrees, not in radians."];
+  if (truth && near(answer, (truth * Math.PI) / 180)) return ["wrong", "This is in radians, not in degrees."];
+  if (truth && near(answer, 1 / truth)) return ["wrong", "This is the inverse of the answer."];
+  const power = truth && answer / truth > 0 ? Math.log10(answer / truth) : NaN;
+  if (Math.abs(power - Math.round(power)) < 0.002 && Math.round(power))
+    return ["wrong", "Wrong by a power of ten: check the conversion of units."];
+  if (Math.abs(answer - truth) < 0.05 * Math.abs(truth))
+    return ["partial", "Close, but rounded too much: give three digits."];
+  return ["wrong", "Not right. Try a hint."];
+}
+
+for (const form of document.querySelectorAll("form.numeric")) {
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const output = form.querySelector("output");
+    const [kind, sentence] = grade(form.querySelector("input").value, questions[form.dataset.question]);
+    output.className = kind;
+    output.textContent = sentence;
+  });
+}
+for (const hints of document.querySelectorAll(".hints")) {
+  const all = [...hints.querySelectorAll(".hint")];
+  all.slice(1).forEach((hint) => hint.classList.add("locked")); // each hint appears when the hint before it was opened
+  all.forEach((hint, place) => hint.addEventListener("toggle", () => all[place + 1]?.classList.remove("locked")));
+}

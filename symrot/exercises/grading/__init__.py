@@ -1,0 +1,1 @@
+"""The grading of answers: numbers with units, and formulas by the exact checker."""

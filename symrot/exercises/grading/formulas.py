@@ -1,0 +1,217 @@
+"""The grading of a formula: the checker decides whether it equals the answer, and names the error if it does not."""
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import replace
+
+from symrot.checker.interface import check
+from symrot.checker.verdict import Verdict
+from symrot.errors import InputError
+from symrot.exercises.exercise import Question
+from symrot.exercises.grading.mark import Mark
+from symrot.exercises.grading.words import FORMULA_FAULTS, RIGHT
+
+__all__ = ["mark_formula"]
+
+_SUBSCRIPTS = str.maketrans(
+    {**{chr(0x2080 + n): f"_{n}" for n in range(10)}, "−": "-", "²": "^2", "³": "^3", "·": "*", "⋅": "*", "×": "*"}
+)
+GREEK = {
+    "α": "alpha", "θ": "theta", "φ": "phi", "ϕ": "phi", "ψ": "psi", "ω": "omega", "Ω": "Omega", "τ": "tau",
+    "δ": "delta", "γ": "gamma", "μ": "mu", "ρ": "rho", "β": "beta", "ε": "epsilon",
+}  # fmt: skip
+"""Greek letter -> its name in claims."""
+
+FUNCTIONS = (
+    "sin",
+    "cos",
+    "tan",
+    "cot",
+    "sec",
+    "csc",
+    "sqrt",
+    "pi",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "abs",
+    "exp",
+    "log",
+)
+LONGEST_PRODUCT = 12
+"""The most letters of a product that is written without signs."""
+
+MAYBE_EXCHANGED = ("none", "two_faults", "dimension")
+"""Diagnoses of a formula that may be right with two letters exchanged."""
+
+_NAME = re.compile(r"[^\W\d]\w*")
+_JOINED = re.compile(r"(?P<divided>/\s*)?(?P<name>[^\W\d]\w*)(?P<power>(?:\^|\*\*)\s*\d+)?")
+
+
+def mark_formula(key: str, answer: str, question: Question) -> Mark:
+    """Return the mark of a formula.
+
+    Parameters
+    ----------
+    key : str
+        The name of the question on the mark.
+    answer : str
+        The formula as typed text or LaTeX, with or without its name and ``=`` in front.
+    question : Question
+        Of kind ``"formula"``.
+    """
+    try:
+        own, truth = _sides(answer, question)
+        verdict = _verdict(own, truth, question)
+    except InputError as reason:
+        return Mark(key, answer, "unread", text=str(reason))
+    if _is_right(verdict):
+        return Mark(key, answer, "right", RIGHT)
+    if verdict.verdict not in ("false", "conditional"):
+        return Mark(
+            key, answer, "undecided", text=f"symrot could not decide this answer: {verdict.reason or verdict.verdict}"
+        )
+    code = _code(own, truth, verdict, question)
+    credit, sentence = FORMULA_FAULTS.get(code, FORMULA_FAULTS["none"])
+    misfit = _misfit(own, truth, question)
+    return Mark(key, answer, "wrong", credit, code, f"{sentence} ({misfit})" if misfit else sentence)
+
+
+def _misfit(own: str, truth: str, question: Question) -> str:
+    """Return how the units of a formula differ from those of the answer, or an empty text."""
+    try:
+        dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
+    except InputError:  # LaTeX in which the names of the units do not occur
+        return ""
+    if dimension.status != "inconsistent":
+        return ""
+    return dimension.text.replace("the left side", "the answer").replace("the right side", "your formula")
+
+
+def _is_right(verdict: Verdict) -> bool:
+    return verdict.verdict == "true" or (verdict.verdict == "conditional" and not verdict.requires)
+
+
+def _verdict(
+    own: str, truth: str, question: Question, repair: bool = True, units: dict[str, str] | None = None
+) -> Verdict:
+    """Return the verdict on the claim that a formula equals the answer.
+
+    Without units the checker looks for the error even where the units do not fit.
+    """
+    latex = "\\" in own
+    assume = [f"{name} > 0" for name in question.positive if not latex]
+    return check(f"{truth} = {own}" if latex else f"{truth} == {own}", assume=assume, units=units, repair=repair)
+
+
+def _sides(answer: str, question: Question) -> tuple[str, str]:
+    """Return the answer without its name, and the true formula in the same language.
+
+    Raises
+    ------
+    InputError
+        For a text with several equations, and for names that the exercise does not have.
+    """
+    text = answer.strip().strip("$").strip()
+    *names, formula = re.split(r"==?|:=", text)
+    if len(names) > 1 or not formula.strip():
+        raise InputError(f"expected one formula for ${question.name}$, got {answer[:60]!r}")
+    if "\\" in formula:
+        return formula, question.latex
+    bare = re.sub(r"\{([^{}]*)\}", r"\1", re.sub(r"\^\{([^{}]*)\}", r"^(\1)", formula))
+    plain = _plain(bare.translate(_SUBSCRIPTS))
+    known = (*question.symbols, *FUNCTIONS)
+    plain = _JOINED.sub(lambda match: _split(match, known), plain)
+    unknown = sorted({name for name in _NAME.findall(plain) if name not in known})
+    if unknown:
+        letters = ", ".join(name for name in question.symbols if name in _NAME.findall(question.answer))
+        raise InputError(f"expected a formula in {letters}, got one with {', '.join(unknown)}")
+    return f"1*({plain})" if re.fullmatch(r"\s*\w+\s*", plain) else plain, question.answer
+
+
+def _plain(text: str) -> str:
+    """Return a text with Greek letters by name, and with names such as ``dphi`` and ``acos``."""
+    text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
+    for letter, name in GREEK.items():
+        text = text.replace(f"{letter}\u0307", f" d{name}")
+        text = re.sub(rf"\b{name}_?dot\b", f"d{name}", text)
+        text = re.sub(rf"(?<=[^\W_]){letter}", f" {letter}", text).replace(letter, name)
+        text = re.sub(rf"{name}(?=[^\W\d_])", f"{name} ", text)
+    return text
+
+
+def _split(match: re.Match[str], known: Collection[str]) -> str:
+    """Return a name, or the product of known names that are written together: ``m*g*l`` for ``mgl``."""
+    name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
+    spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
+    for single in (name, spelled, name.replace("_", "")):
+        if single in known:
+            return f"{divided}{single}{power}"
+    product = "*".join(next(_partitions(name, known), (name,))) + power
+    return f"{divided}({product})" if divided else product
+
+
+def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
+    if not name:
+        yield ()
+    if len(name) > LONGEST_PRODUCT:
+        return
+    for part in sorted(known, key=len, reverse=True):
+        if part not in FUNCTIONS and name.startswith(part):
+            yield from ((part, *rest) for rest in _partitions(name[len(part) :], known))
+
+
+def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
+    """Return the code of the error: the reciprocal, two letters exchanged, or the checker's diagnosis."""
+    if "\\" not in own:
+        if _holds(f"1/({own})", truth, question):
+            return "inverse"
+        if verdict.diagnosis.code in MAYBE_EXCHANGED and _exchanged(own, truth, question):
+            return "exchanged"
+    code = verdict.diagnosis.code
+    if "\\" not in own and not _letters(own, question):
+        return "none"
+    if "\\" not in own and code == "factor" and not _letters(truth, question) <= _letters(own, question):
+        return "letter_missing"
+    if verdict.requires:
+        return "requires_condition"
+    if code == "dimension" and "\\" not in own:
+        code = _code_without_units(own, truth, question)
+    if code == "dimension" or (code == "none" and _misfit(own, truth, question)):
+        return "unit"
+    return code
+
+
+def _letters(formula: str, question: Question) -> set[str]:
+    """Return the symbols of the exercise that a formula uses."""
+    return {name for name in _NAME.findall(formula) if name in question.symbols}
+
+
+def _code_without_units(own: str, truth: str, question: Question) -> str:
+    """Return the diagnosis of a formula whose units do not fit, in letters that have no conventional units."""
+    letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
+    plain = {letters[name]: "1" for name in question.symbols}
+    renamed = replace(question, symbols=plain, positive=tuple(letters[name] for name in question.positive))
+    first, second = (_NAME.sub(lambda match: letters.get(match[0], match[0]), side) for side in (own, truth))
+    return _verdict(first, second, renamed).diagnosis.code
+
+
+def _holds(own: str, truth: str, question: Question) -> bool:
+    """Return whether a changed formula is right; a formula without a value, such as the reciprocal of 0, is not."""
+    try:
+        return _is_right(_verdict(own, truth, question, repair=False))
+    except InputError:
+        return False
+
+
+def _exchanged(own: str, truth: str, question: Question) -> bool:
+    """Return whether the answer is right with two of its letters exchanged."""
+    names = sorted({name for name in _NAME.findall(own) + _NAME.findall(truth) if name in question.symbols})
+    for place, first in enumerate(names):
+        for second in names[place + 1 :]:
+            pair = {first: second, second: first}
+            exchanged = _NAME.sub(lambda match: pair.get(match[0], match[0]), own)  # noqa: B023
+            if exchanged != own and _holds(exchanged, truth, question):
+                return True
+    return False

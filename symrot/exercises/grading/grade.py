@@ -1,0 +1,116 @@
+"""The function ``grade``, and the files of answers that the command reads."""
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.exercises.exercise import Exercise, Question
+from symrot.exercises.grading.formulas import mark_formula
+from symrot.exercises.grading.mark import Grades, Mark
+from symrot.exercises.grading.numbers import mark_number
+from symrot.exercises.sheet import ExerciseSheet, read_sheet
+
+__all__ = ["grade", "grade_files"]
+
+LONGEST = 2000
+
+KINDS: dict[str, Callable[[str, str, Question], Mark]] = {"number": mark_number, "formula": mark_formula}
+
+
+def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequence[str]) -> Grades:
+    """Return the marks of answers to one exercise or to a sheet.
+
+    Parameters
+    ----------
+    exercises : Exercise or ExerciseSheet
+    answers : mapping of str to str, or sequence of str
+        Answers by question, ``"a"`` of an exercise and ``"1a"`` of a sheet; or one answer for each question in order.
+        Numbers have a unit and at least two significant digits; formulas are typed text or LaTeX.
+
+    Returns
+    -------
+    Grades
+        One mark for each question, with its credit, the kind of error, and a sentence for the student.
+
+    Raises
+    ------
+    InputError
+        For answers to questions that there are not.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> exercise = symrot.exercise("rod_about_end")[0]
+    >>> [mark.outcome for mark in symrot.grade(exercise, {"a": "m*(L/2)^2 + m*L^2/12"})]
+    ['right', 'missing']
+    """
+    questions = dict(_keyed(exercises))
+    if isinstance(answers, str):
+        raise InputError("answers: expected a mapping or a list of texts, got one text")
+    if not isinstance(answers, Mapping):
+        if len(answers) > len(questions):
+            raise InputError(f"answers: expected at most {len(questions)}, one for each question, got {len(answers)}")
+        answers = dict(zip(questions, answers, strict=False))
+    unknown = [key for key in answers if key not in questions]
+    if unknown:
+        raise InputError(f"answers: expected the questions {', '.join(questions)}, got {unknown[0]!r}")
+    return Grades(tuple(_mark(key, answers.get(key), question) for key, question in questions.items()))
+
+
+def _keyed(exercises: Exercise | ExerciseSheet) -> Iterator[tuple[str, Question]]:
+    if isinstance(exercises, Exercise):
+        yield from ((question.key, question) for question in exercises.questions)
+        return
+    for number, exercise in enumerate(exercises, 1):
+        yield from ((f"{number}{question.key}", question) for question in exercise.questions)
+
+
+def _mark(key: str, answer: Any, question: Question) -> Mark:
+    if answer is None or not str(answer).strip():
+        return Mark(key, "", "missing", text="no answer was written")
+    text = str(answer)
+    if len(text) > LONGEST:
+        return Mark(key, text[:60], "unread", text=f"expected at most {LONGEST} letters, got {len(text)}")
+    return KINDS[question.kind](key, text, question)
+
+
+def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
+    """Return the marks of a file of answers to the exercises of a JSON file.
+
+    Parameters
+    ----------
+    exercises : str or Path
+        What ``symrot exercise --format json`` wrote.
+    answers : str or Path
+        A JSON object ``{"1a": "m*L^2/3"}``, or a text with a line ``1a: m*L^2/3`` for each answer.
+    """
+    sheet = read_sheet(_json(exercises, Path(exercises).read_text(encoding="utf-8")), str(exercises))
+    text = Path(answers).read_text(encoding="utf-8")
+    return grade(sheet, _answers(answers, text))
+
+
+def _answers(path: str | Path, text: str) -> dict[str, str]:
+    if text.lstrip().startswith("{"):
+        data = _json(path, text)
+        return {str(key): str(value) for key, value in data.items()}
+    answers = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        match = re.match(r"\s*\(?(\d+[a-z])\)?\s*[:)]\s*(.*)$", line)
+        if match is None:
+            raise InputError(
+                f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3'"
+            )
+        answers[match[1]] = match[2]
+    return answers
+
+
+def _json(path: str | Path, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as fault:
+        raise InputError(f"{path}: expected JSON, but {fault}") from None

@@ -1,0 +1,86 @@
+"""The mark of one answer, and the marks of a sheet."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+__all__ = ["Grades", "Mark"]
+
+
+@dataclass(frozen=True)
+class Mark:
+    """The mark of one answer.
+
+    Attributes
+    ----------
+    key : str
+        The question, such as ``"1a"`` or ``"a"``.
+    answer : str
+    outcome : str
+        ``"right"``, ``"wrong"``, ``"unread"`` (the answer cannot be read), ``"undecided"`` or ``"missing"``.
+    credit : Fraction
+        From 0 to 1.
+    code : str
+        The kind of error; empty for a right answer.
+    text : str
+        One sentence for the student.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> grades = symrot.grade(symrot.exercise("rod_about_end")[0], {"a": "m*L**2/6"})
+    >>> grades.marks[0].code, grades.marks[0].credit
+    ('factor', Fraction(1, 2))
+    """
+
+    key: str
+    answer: str
+    outcome: str
+    credit: Fraction = Fraction(0)
+    code: str = ""
+    text: str = ""
+
+    def __str__(self) -> str:
+        credit = f"{self.outcome}, {float(self.credit):.0%}"
+        return f"({self.key}) {credit}{f': {self.text}' if self.text else ''}"
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the mark as JSON data."""
+        return {**vars(self), "credit": float(self.credit)}
+
+
+@dataclass(frozen=True)
+class Grades:
+    """The marks of all questions of an exercise or a sheet.
+
+    Attributes
+    ----------
+    marks : tuple of Mark
+
+    Examples
+    --------
+    >>> import symrot
+    >>> print(symrot.grade(symrot.exercise("rod_about_end")[0], {"a": "L^2 m/3"}))
+    (a) right, 100%
+    (b) missing, 0%: no answer was written
+    1 of 2 points
+    """
+
+    marks: tuple[Mark, ...]
+
+    def __iter__(self) -> Iterator[Mark]:
+        return iter(self.marks)
+
+    @property
+    def credit(self) -> Fraction:
+        """The sum of all credits; each question has one point."""
+        return sum((mark.credit for mark in self.marks), Fraction(0))
+
+    def __str__(self) -> str:
+        total = f"{float(self.credit):g} of {len(self.marks)} points"
+        return "\n".join([*map(str, self.marks), total])
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the marks as JSON data."""
+        return {"credit": float(self.credit), "of": len(self.marks), "marks": [mark.to_json() for mark in self.marks]}

@@ -1,0 +1,58 @@
+"""What a student reads about a wrong answer, and the credit for it. One table for numbers, one for formulas."""
+
+from fractions import Fraction
+
+__all__ = ["FORMULA_FAULTS", "NUMBER_FAULTS", "RIGHT", "SLIPS"]
+
+RIGHT = Fraction(1)
+
+NUMBER_FAULTS: dict[str, tuple[Fraction, str]] = {
+    "unit_forgotten": (Fraction(4, 5), "the number is right, but its unit is missing: write {unit}"),
+    "coarse": (Fraction(1, 2), "the number is rounded too much: give at least three significant digits"),
+    "sign": (Fraction(1, 2), "the size is right, but the sign is wrong: check the directions"),
+    "factor": (Fraction(1, 2), "it is {factor} times the answer: look for a factor that is missing or too many"),
+    "degrees": (Fraction(1, 2), "degrees and radians are mixed up: work in radians, and convert at the end"),
+    "power_of_ten": (Fraction(1, 2), "it is wrong by a power of ten: check how you converted the units"),
+    "inverse": (Fraction(1, 4), "this is the reciprocal of the answer"),
+    "slip": (Fraction(1, 2), "{slip}"),
+    "turns": (Fraction(1, 2), "turns and radians are mixed up: one turn is 2 pi rad"),
+    "dimension": (Fraction(0), "the unit is {own}, but the answer has the unit {unit}"),
+    "other": (Fraction(0), "the number is wrong"),
+}
+"""Kind of error in a number -> credit and sentence."""
+
+SLIPS: dict[str, str] = {
+    "diameter": "a diameter is used in place of the radius {}",
+    "radius": "a radius is used in place of the diameter {}",
+    "degrees": "the angle {} is used in degrees where radians are needed",
+    "unconverted": "the unit of {} is not converted",
+}
+"""Kind of a quantity used wrongly -> sentence, with the letter of the quantity."""
+
+HALF, QUARTER, NOTHING = Fraction(1, 2), Fraction(1, 4), Fraction(0)
+
+FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
+    "sign_of_term": (HALF, "one term has the wrong sign"),
+    "overall_sign": (HALF, "the whole formula has the wrong sign: check the directions"),
+    "factor": (HALF, "a factor is wrong, missing or too many"),
+    "exponent": (HALF, "a power is wrong: look for a square that is missing"),
+    "half_angle": (HALF, "an angle stands where its half belongs"),
+    "double_half_angle": (HALF, "half of an angle stands where the angle belongs"),
+    "sin_cos_swap": (HALF, "sine and cosine are exchanged"),
+    "wrong_symbol": (HALF, "one letter stands where another belongs"),
+    "missing_term": (HALF, "a term is missing"),
+    "extra_term": (HALF, "there is a term too many"),
+    "inertia_product_sign": (HALF, "the products of inertia have the other sign"),
+    "active_passive_transpose": (HALF, "the rotation is used the wrong way round"),
+    "frame_body_space": (HALF, "body components and space components are mixed up"),
+    "quaternion_product_order": (HALF, "the factors of the quaternion product are in the wrong order"),
+    "commutator_order": (HALF, "the factors of a matrix product are in the wrong order"),
+    "exchanged": (HALF, "two letters are exchanged"),
+    "letter_missing": (QUARTER, "a letter of the answer is missing"),
+    "inverse": (QUARTER, "this is the reciprocal of the answer"),
+    "two_faults": (QUARTER, "two things are wrong"),
+    "requires_condition": (HALF, "this is right in a special case only"),
+    "unit": (NOTHING, "the units do not fit, so something is missing or too many"),
+    "none": (NOTHING, "the formula is not equal to the answer"),
+}
+"""Code of the checker's diagnosis -> credit and sentence; the codes without an entry have that of ``none``."""

@@ -1,0 +1,136 @@
+"""What a template returns: a problem in symbols, with its laws as equations and the ranges of its numbers."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from sympy import Add, Expr, Mul, Symbol
+
+__all__ = ["Asked", "Line", "Problem", "Quantity", "Template", "chain", "quantity", "written_product", "written_sum"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A symbol with the numbers that it may have, as texts such as ``"0.4"`` or ``"2/3"``, in a unit.
+
+    Attributes
+    ----------
+    symbol : Symbol
+    numbers : tuple of str
+    unit : str
+        A unit that :mod:`symrot.checker.units.conversion` knows; empty for a pure number.
+    words : str
+        The meaning of the symbol.
+    """
+
+    symbol: Symbol
+    numbers: tuple[str, ...]
+    unit: str
+    words: str
+
+
+def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
+    """Return a quantity whose numbers are written in one text, with spaces between them."""
+    return Quantity(symbol, tuple(numbers.split()), unit, words)
+
+
+def written_sum(*terms: Any) -> Expr:
+    """Return a sum whose terms stay apart on the page: ``m*R**2/2 + m*R**2``."""
+    return Add(*terms, evaluate=False)
+
+
+def written_product(*factors: Any) -> Expr:
+    """Return a product whose factors stay apart on the page."""
+    return Mul(*factors, evaluate=False)
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of a solution: an equation that must hold exactly.
+
+    Attributes
+    ----------
+    claim : str
+        The reason, a sentence.
+    left, right : Expr or Matrix
+    named : str
+        LaTeX to display for the left side, if that has a name.
+    relations : tuple of Expr
+        Expressions that the problem makes zero.
+    """
+
+    claim: str
+    left: Any
+    right: Any
+    named: str = ""
+    relations: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A quantity that the exercise asks for.
+
+    Attributes
+    ----------
+    name : str
+        Its letter as LaTeX, ``"I_O"``.
+    words : str
+        Its meaning.
+    formula : Expr
+        The quantity in the symbols of the problem, as symrot derived it. It is the right side of a line of the
+        solution whose left side has this name.
+    unit : str
+        The unit of the number; empty for a pure number.
+    as_formula, as_number : bool
+        Whether the exercise asks for the formula, and for the number.
+    """
+
+    name: str
+    words: str
+    formula: Expr
+    unit: str
+    as_formula: bool = True
+    as_number: bool = True
+
+
+def chain(
+    name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
+) -> tuple[Line, ...]:
+    """Return the lines that lead from a law to a result: the law as it is written, and the result if that differs."""
+    first = Line(law, left, written, name)
+    return (first,) if written == result else (first, Line(then, left, result, name))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem in symbols.
+
+    Attributes
+    ----------
+    title : str
+    statement : str
+        The text of the exercise, Markdown with formulas in ``$``.
+    law : str
+        The first hint: which law answers the question.
+    quantities : tuple of Quantity
+    lines : tuple of Line
+        The equations of the solution. The second hint shows the first of them.
+    asked : tuple of Asked
+    fits : callable
+        Whether numbers, by symbol in SI units, make sense together.
+    figure : str
+        A drawing as SVG, or an empty text.
+    """
+
+    title: str
+    statement: str
+    law: str
+    quantities: tuple[Quantity, ...]
+    lines: tuple[Line, ...]
+    asked: tuple[Asked, ...]
+    fits: Callable[[Mapping[Symbol, Expr]], bool] = lambda values: True
+    figure: str = ""
+
+
+Template = Callable[[Random], Problem]

@@ -1,0 +1,138 @@
+"""Sheets of exercises, chosen by topic and seed."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from random import Random
+from typing import Any, overload
+
+from symrot.errors import InputError
+from symrot.exercises.exercise import SCHEMA, Exercise, make, sheet_data
+from symrot.exercises.templates import chosen, template, topic_of
+
+__all__ = ["ExerciseSheet", "exercise", "read_sheet"]
+
+MOST = 1000
+
+
+@dataclass(frozen=True)
+class ExerciseSheet:
+    """A sheet of exercises; iterate over it, or take one by its number.
+
+    Attributes
+    ----------
+    exercises : tuple of Exercise
+
+    Examples
+    --------
+    >>> import symrot
+    >>> sheet = symrot.exercise("inertia", seed=1, count=2)
+    >>> len(sheet), sheet.markdown().splitlines()[0]
+    (2, '# Exercises')
+    """
+
+    exercises: tuple[Exercise, ...]
+
+    def __len__(self) -> int:
+        return len(self.exercises)
+
+    def __iter__(self) -> Iterator[Exercise]:
+        return iter(self.exercises)
+
+    @overload
+    def __getitem__(self, place: int) -> Exercise: ...
+    @overload
+    def __getitem__(self, place: slice) -> tuple[Exercise, ...]: ...
+    def __getitem__(self, place: int | slice) -> Exercise | tuple[Exercise, ...]:
+        return self.exercises[place]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the sheet as JSON data."""
+        return sheet_data(self.exercises)
+
+    def print(self, form: str) -> str:
+        """Return the sheet as ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``."""
+        from symrot.exercises.formats import FORMATS
+
+        if form not in FORMATS:
+            raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {form!r}")
+        return FORMATS[form](self.exercises)
+
+    def markdown(self) -> str:
+        """Return the sheet as Markdown, with hints and solutions after the exercises."""
+        return self.print("markdown")
+
+    def latex(self) -> str:
+        """Return the sheet as a LaTeX document."""
+        return self.print("latex")
+
+    def html(self) -> str:
+        """Return the sheet as a self-contained page that grades numbers."""
+        return self.print("html")
+
+    def moodle(self) -> str:
+        """Return the sheet as Moodle XML, which Moodle imports into its question bank."""
+        return self.print("moodle")
+
+    def json(self) -> str:
+        """Return the sheet as JSON, which ``symrot grade`` reads."""
+        return self.print("json")
+
+    def _repr_markdown_(self) -> str:
+        return self.markdown()
+
+
+def exercise(topic: str = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet:
+    """Return exercises with numbers, hints and proven solutions.
+
+    Parameters
+    ----------
+    topic : str
+        A topic, the name of a template, or nothing for all topics in turn: see ``symrot exercise --list``.
+    seed : int
+        Other seeds give other numbers and begin with another template. The same seed gives the same exercises on
+        every machine.
+    count : int
+        The number of exercises.
+
+    Returns
+    -------
+    ExerciseSheet
+        With the methods ``markdown``, ``latex``, ``html``, ``moodle`` and ``json``.
+
+    Raises
+    ------
+    InputError
+        For an unknown topic, and for a count that is not from 1 to 1000.
+    ProofError
+        If a line of a solution does not hold.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> (sheet,) = symrot.exercise("rod_about_end", seed=3)
+    >>> sheet.questions[0].prompt
+    'Find $I_O$, the moment of inertia about the axis, as a formula in $m$, $L$.'
+    """
+    if not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed: expected a whole number, 0 or more, got {seed!r}")
+    if not isinstance(count, int) or not 1 <= count <= MOST:
+        raise InputError(f"count: expected a whole number from 1 to {MOST}, got {count!r}")
+    names = chosen(topic)
+    return ExerciseSheet(tuple(_exercise(names[(seed + n) % len(names)], seed + n // len(names)) for n in range(count)))
+
+
+def _exercise(name: str, seed: int) -> Exercise:
+    source = Random(f"{name} {seed}")
+    return make(name, topic_of(name), seed, template(name)(source), source)
+
+
+def read_sheet(data: Any, where: str) -> ExerciseSheet:
+    """Return the sheet of JSON data, raising InputError for data that no sheet wrote."""
+    try:
+        if data["schema"] != SCHEMA:
+            raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")
+        return ExerciseSheet(tuple(Exercise.from_json(each) for each in data["exercises"]))
+    except (KeyError, TypeError, AttributeError) as fault:
+        raise InputError(
+            f"{where}: expected the JSON that `symrot exercise --format json` writes, but {fault} is missing or wrong"
+        ) from None

@@ -1,0 +1,97 @@
+"""Exact numbers with units: the factor of a unit to SI units, and the text and LaTeX of a measured number."""
+
+import re
+from typing import Any
+
+from sympy import Expr, Integer, Rational, pi
+
+from symrot.checker.units.conversion import UnitProduct, measured_text
+from symrot.errors import InputError
+
+__all__ = ["decimal", "factor_of", "unit_latex", "unit_of"]
+
+_RECIPROCAL = re.compile(r"^1?\s*/\s*([^\W\d_]+)(?:\^?(\d+))?$")
+
+_SIGNS = (
+    ("⁻", "^-"),
+    ("¹", "1"),
+    ("²", "^2"),
+    ("³", "^3"),
+    ("^-^", "^-"),
+    ("**", "^"),
+    ("⋅", " "),
+    ("·", " "),
+    ("*", " "),
+    ("kgm", "kg m"),
+    ("Nms", "N m s"),
+)
+
+
+def unit_of(text: str) -> UnitProduct | None:
+    """Return a unit such as ``kg m^2/s``, or None for a text that is no unit.
+
+    Examples
+    --------
+    >>> unit_of("rpm").note
+    '1 rpm = pi/30 rad/s'
+    """
+    plain = text.strip()
+    for sign, instead in _SIGNS:
+        plain = plain.replace(sign, instead)
+    bracket = re.fullmatch(r"([^()]*)/\(([^()]*)\)", plain)
+    if bracket:
+        plain = f"{bracket[1]}/{'/'.join(bracket[2].split())}"
+    reciprocal = _RECIPROCAL.match(plain)
+    if reciprocal:
+        plain = f"{reciprocal[1]}^-{reciprocal[2] or 1}"
+    measured = measured_text(f"1 {plain} = 1 {plain}")  # one letter alone, without an equation, may be a quantity
+    if measured is None or measured.text != "1*unit_1 = 1*unit_1":
+        return None
+    return measured.units["unit_1"]
+
+
+def factor_of(unit: str) -> Expr:
+    """Return the exact factor of a unit to SI units; 1 for a pure number.
+
+    Examples
+    --------
+    >>> factor_of("mm"), factor_of("deg")
+    (1/1000, pi/180)
+    """
+    if not unit:
+        return Integer(1)
+    product = unit_of(unit)
+    if product is None:
+        raise InputError(f"unit: expected a product of units such as 'kg m^2', got {unit!r}")
+    return Rational(product.fraction.numerator, product.fraction.denominator) * pi**product.power_of_pi
+
+
+def unit_latex(unit: str) -> str:
+    """Return the LaTeX of a unit: upright, with superscripts for powers, and nothing for a pure number."""
+    if unit == "deg":
+        return r"^\circ"
+    reciprocal = _RECIPROCAL.match(unit)
+    if reciprocal:
+        unit = f"{reciprocal[1]}^-{reciprocal[2] or 1}"
+    upright = re.sub(r"[^\W\d_]+(/[^\W\d_]+)?", lambda match: rf"\mathrm{{{match[0]}}}", unit)
+    raised = re.sub(r"\^(-?\d+)", r"^{\1}", upright)
+    return r"\," + raised.replace(" ", r"\,") if unit else ""
+
+
+def decimal(value: Any, digits: int = 4) -> str:
+    """Return a number with so many significant digits, without an exponent where that is short.
+
+    Examples
+    --------
+    >>> decimal(Rational(1, 3)), decimal(Integer(120000)), decimal(Rational(1, 2))
+    ('0.3333', '120000', '0.5')
+    """
+    exact = Rational(value) if value.is_Rational else None
+    if exact is not None and exact.q == 1 and abs(exact.p) < 10**6:
+        return str(exact.p)
+    number = float(value.evalf(digits + 10))
+    text = f"{number:.{digits}g}"
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    return f"{mantissa}e{int(exponent)}" if not -4 <= int(exponent) < 7 else f"{number:.0f}"

@@ -1,0 +1,67 @@
+"""The commands ``symrot exercise`` and ``symrot grade``."""
+
+import json
+
+import pytest
+
+from symrot.cli.main import main
+
+USAGE = 2
+
+
+def run(capsys, *arguments):
+    code = main(list(arguments))
+    output = capsys.readouterr()
+    return code, output.out, output.err
+
+
+def test_a_sheet_is_written_and_graded(capsys, tmp_path):
+    sheet, answers = tmp_path / "sheet.json", tmp_path / "answers.txt"
+    assert run(capsys, "exercise", "rod_about_end", "--seed", "0", "--format", "json", "-o", str(sheet))[0] == 0
+    answers.write_text("# Ada\n1a: m L^2/6\n1b) 4 kg m^2\n", encoding="utf-8")
+    code, text, _ = run(capsys, "grade", str(sheet), str(answers))
+    assert (
+        code == 1 and "(1a) wrong, 50%: a factor" in text and "(1b) right, 100%" in text and "1.5 of 2 points" in text
+    )
+    answers.write_text(json.dumps({"1a": "m L^2/3", "1b": "4 kg m^2"}), encoding="utf-8")
+    assert run(capsys, "grade", str(sheet), str(answers))[0] == 0
+
+
+def test_one_exercise_is_graded_by_its_name_and_seed(capsys):
+    code, text, _ = run(capsys, "grade", "--name", "rod_about_end", "--seed", "0", "m L^2/3", "4 kg m^2", "--json")
+    assert code == 0 and json.loads(text)["credit"] == 2
+
+
+def test_the_list_names_every_topic(capsys):
+    code, text, _ = run(capsys, "exercise", "--list")
+    assert code == 0 and "gears\n  ring_fixed\n" in text
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (("exercise", "cooking"), "expected a topic"), (("exercise", "--count", "many"), "invalid whole number"),
+    (("exercise", "--format", "pdf"), "invalid choice"), (("exercise", "gears", "--list"), "--list alone"),
+    (("exercise", "--count", "0"), "count: expected"), (("grade", "x.json"), "expected EXERCISES.json"),
+    (("grade", "--name", "rod_about_end", "1"), "expected --seed"), (("grade", "no.json", "no.txt"), "no.json: No such file"),
+    (("grade", "--name", "rod_about_end", "--seed", "0", "1", "2", "3"), "expected at most 2"),
+])  # fmt: skip
+def test_bad_usage_is_one_sentence_and_exit_code_2(capsys, arguments, words):
+    code, text, message = run(capsys, *arguments)
+    assert code == USAGE and text == "" and words in message and message.count("\n") == 1
+
+
+@pytest.mark.parametrize("content, words", [
+    ("[1]", "expected the JSON"), ("{", "expected JSON"), ('{"schema": 9}', "schema 1"), ('{"schema": 1}', "expected the JSON"),
+])  # fmt: skip
+def test_a_file_that_is_no_sheet_is_refused(capsys, tmp_path, content, words):
+    (tmp_path / "sheet.json").write_text(content, encoding="utf-8")
+    (tmp_path / "answers.txt").write_text("1a: 1\n", encoding="utf-8")
+    code, _, message = run(capsys, "grade", str(tmp_path / "sheet.json"), str(tmp_path / "answers.txt"))
+    assert code == USAGE and words in message
+
+
+def test_a_line_that_is_no_answer_is_named(capsys, tmp_path):
+    sheet, answers = tmp_path / "sheet.json", tmp_path / "answers.txt"
+    run(capsys, "exercise", "rod_about_end", "--format", "json", "-o", str(sheet))
+    answers.write_text("1a: 1\nhello\n", encoding="utf-8")
+    code, _, message = run(capsys, "grade", str(sheet), str(answers))
+    assert code == USAGE and "line 2" in message
