@@ -256,7 +256,8 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code in ("missing_term", "wrong_symbol")):
+    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree)
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
