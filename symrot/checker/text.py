@@ -178,8 +178,8 @@ def _on_measured(
     if verdict is None or (refusal is not None and usual is None and verdict.verdict != "true"):
         raise refusal or InputError(f"expected numbers with units, got {source[:60]!r}")
     if words == STANDARD_GRAVITY and verdict.verdict == "false":
-        reason = f"g is an acceleration here, and its value is not stated; {words}, the text is false"
-        return Verdict("definition", text=source.strip(), reason=reason)
+        sentence = f"g is an acceleration here, and its value is not stated; {words}, the text is false"
+        return Verdict("definition", text=source.strip(), reason=sentence)
     if words:
         verdict = replace(verdict, notes=(*verdict.notes, f"read {words}"))
     elif usual is verdict:
