@@ -171,7 +171,7 @@ def test_dimensions_in_words_have_their_factors(text, body, verdict, repair):
     ("I = m L^2/3", "rod about an axis through one end perpendicular to the rod", "true"),
     ("I = m r^2/2", "disk about an axis through its centre perpendicular to its plane", "true"),
     ("I = m r^2/4", "disk about an axis through its centre perpendicular to its plane", "false"),
-    ("k = r/√2", "solid cylinder", "recognised"),
+    ("k = r/√2", "solid cylinder", "recognised"), ("k = r/√2", "disk about a diameter", "doubtful"), ("I = 2 m r^2", "dumbbell", "definition"),
     ("I = m L^2/12", "rod about the pivot", "definition"),
     ("a = 2/3 g sin θ", "solid cylinder that rolls down a slope", "true"),
 ))  # fmt: skip
@@ -192,6 +192,19 @@ def test_a_line_as_an_axis_chooses_the_moments_about_it(text, body, verdict):
 def test_the_axis_in_the_meaning_of_a_moment_counts(text, meaning, verdict):
     """A disk has no edge; nothing says through which point an axis in its plane, or an axial one, goes."""
     assert symrot.check(text, body="disk", where=[f"I = {meaning}"]).verdict == verdict
+
+
+def test_a_gyroscope_is_a_fast_top():
+    assert symrot.check("Ω = m g l/(I ω)", body="gyroscope").verdict == "recognised"
+
+
+def test_the_height_of_a_fall_is_no_dimension_of_the_body():
+    assert symrot.check("v² = 4/3 g h", body="cylinder that rolls from a height h").verdict == "true"
+
+
+def test_lower_case_letters_of_a_sequence_are_noted():
+    verdict = symrot.check("ω_x = φ' - ψ' sin θ", sequence="zyx", frame="body")
+    assert "zyx in lower case is about fixed axes; for moving axes write ZYX" in verdict.notes
 
 
 def test_a_letter_that_is_no_usual_one_is_never_called_false():

@@ -20,6 +20,8 @@ from symrot.errors import InputError
     "(3 + 4)/2 s = 3.5 s", "(2 + 3) m = 5 m", "3×10^8 m/s = 300000 km/s", "1 kg·m²/s² = 1 J", "1 Hz = 1/s",
     "3000 rpm = 50 Hz", "1 Hz = 2π rad/s", "1 g = 9.81 m/s^2", "5 g = 0.005 kg", "60 mph = 88 ft/s", "1 hp = 745.7 W",
     "1 kWh = 3.6 MJ", "1 mile = 5280 ft", "1 atm = 101325 Pa", "2 * 3 rad/s = 6 rad/s", "asin(1) = 90 deg",
+    "20 N m / 4 kg m^2 = 5 rad/s^2", "20 N m / (4 kg m^2) = 5 rad/s^2",
+    "1 lb ft = 1.356 N m", "100 lb = 444.8 N", "1 lb = 0.4536 kg", "asin(0.6) = 36.87°",
 ])  # fmt: skip
 def test_numbers_with_units_are_compared_in_si_units(claim):
     assert symrot.check(claim).verdict == "true"

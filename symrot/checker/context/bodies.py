@@ -154,7 +154,8 @@ BODIES: tuple[Kind, ...] = (
          ("a torsional pendulum", "a torsional spring")),
     Kind("two masses on a pulley", ("atwood's machine", "atwood machine"), ("two masses on a pulley",)),
     Kind("aircraft", ("body with a plane of symmetry",), ("a body with a plane of symmetry",)),
-    Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"), ("a level axle", "steady precession", "of a top")),
+    Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
+         ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
 """Every body that words can name; the longest phrase in a text decides which one it is. The phrases for an ellipsoid
 and other words with a vowel have the article "a", as names are compared without "an"."""
@@ -193,6 +194,7 @@ _HARMLESS = re.compile(
 _ACROSS = re.compile(
     r"(axis |line )?(that is )?(perpendicular|normal) to (it|plane|disk|ring|hoop|plate|rod|bar|length|surface|face)\b"
 )
+_HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
 _FLAT = ("disk", "ring", "annulus", "plate", "triangular plate", "flat body")
 ROD = "thin rod"
 
@@ -229,7 +231,7 @@ def body_of_words(words: str) -> Body | None:
         if re.search(pattern, rest):
             motion, rest = name, re.sub(pattern, " ", rest, count=1)
             break
-    letters, factors, rest = _letters(kind, words, rest)
+    letters, factors, rest = _letters(kind, _HEIGHT_OF_FALL.sub(" ", words), rest)
     axes = ""
     if kind.title in (*_FLAT, ROD) and _ACROSS.search(rest):
         axes, rest = "xy" if kind.title == ROD else "z", _ACROSS.sub(" ", rest, count=1)

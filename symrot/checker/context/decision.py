@@ -113,6 +113,16 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If words of
     the context are not used, it does not say everything, and the claim is neither true nor false.
     """
+    verdict = _with_all_words(claim, named, verdict)
+    sequence = claim.context.sequence
+    if verdict.verdict not in ("false", "doubtful", "definition") or not sequence.islower():
+        return verdict
+    note = f"{sequence} in lower case is about fixed axes; for moving axes write {sequence.upper()}"
+    return replace(verdict, notes=(*verdict.notes, note))
+
+
+def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim in its context, as far as all words of the context are understood and used."""
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
         return Verdict("definition", reason=reason)
@@ -224,6 +234,9 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
         reasons = list(misfits(context, known.name, quantity)) or ["with other letters"]
+        is_partly_known = context.body is not None and not context.body.kind.shape
+        if is_partly_known and verdict.verdict == "definition" and "of another body" in reasons:
+            return verdict  # symrot derives a few formulas only for such a body
         sentence = f"this is the formula {' and '.join(reasons)}: the {known.name}"
         word = "doubtful" if verdict.verdict == "definition" else verdict.verdict
         return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")

@@ -25,7 +25,8 @@ FACTORS: dict[str, tuple[Fraction, int]] = {
     **dict.fromkeys(("kg", "m", "s", "rad", "sr", "N", "J", "W", "Pa", "Hz", "A", "K"), (Fraction(1), 0)),
     DEGREE: (Fraction(1, 180), 1), "rev": (Fraction(2), 1), "rpm": (Fraction(1, 30), 1),
     "kHz": (Fraction(1000), 0), "MHz": (Fraction(10**6), 0),
-    "g": (Fraction(1, 1000), 0), "mg": (Fraction(1, 10**6), 0), "lbm": (POUND, 0), "slug": (POUND * GRAVITY / FOOT, 0),
+    "g": (Fraction(1, 1000), 0), "mg": (Fraction(1, 10**6), 0), "lbm": (POUND, 0), "lb": (POUND, 0),
+    "slug": (POUND * GRAVITY / FOOT, 0),
     "mm": (Fraction(1, 1000), 0), "cm": (Fraction(1, 100), 0), "km": (Fraction(1000), 0), "um": (Fraction(1, 10**6), 0),
     "in": (INCH, 0), "ft": (FOOT, 0), "yd": (3 * FOOT, 0), "mile": (MILE, 0),
     "ms": (Fraction(1, 1000), 0), "us": (Fraction(1, 10**6), 0), "min": (Fraction(60), 0), "h": (Fraction(3600), 0),
@@ -40,8 +41,10 @@ FACTORS: dict[str, tuple[Fraction, int]] = {
 }  # fmt: skip
 """Unit -> its factor to SI units, as a fraction and a power of pi; a hertz is one per second."""
 
-OTHER_MEANINGS: dict[str, tuple[Fraction, int, str]] = {"Hz": (Fraction(2), 1, "1/s"), "g": (GRAVITY, 0, "m/s^2")}
-"""Unit -> another meaning, by its factor and SI unit: one rotation per second, and the standard gravity."""
+OTHER_MEANINGS: dict[str, tuple[Fraction, int, str]] = {
+    "Hz": (Fraction(2), 1, "1/s"), "g": (GRAVITY, 0, "m/s^2"), "lb": (POUND * GRAVITY, 0, "N"),
+}  # fmt: skip
+"""Unit -> another meaning, by its factor and SI unit: one rotation per second, the standard gravity, a force."""
 
 ONE_PER_SECOND = "with the hertz as one per second, and the radian as 1"
 STANDARD_GRAVITY = "with g for the standard gravity, 9.80665 m/s^2"
@@ -50,7 +53,7 @@ ANGULAR = frozenset({"rad", "rev", "rpm", DEGREE})
 """Units next to which a hertz is one rotation per second."""
 
 ALIASES = {
-    "lb": "lbm", "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "Nm": "N m", "μm": "um",
+    "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "Nm": "N m", "μm": "um",
     "miles": "mile", "knots": "knot",
 }  # fmt: skip
 PRODUCTS = frozenset({"mg", "ms", "hp"})
@@ -63,7 +66,7 @@ CERTAIN = frozenset({
 """Units that are no letters of formulas, even next to letters."""
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
-_POWER = r"(?:(?:\^|\*\*)\(?-?\d+\)?|[²³]|⁻[¹²³])?"
+_POWER = r"(?:(?:\^|\*\*)(?:\(-?\d+\)|-?\d+)|[²³]|⁻[¹²³])?"
 _NO_LETTER = r"(?!(?![²³⁻¹])\w|[('])"
 _ONE = rf"(?:{_UNIT}){_NO_LETTER}{_POWER}"
 _NUMBER = r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?"
@@ -182,6 +185,7 @@ def measured_text(source: str) -> Measured | None:
     ways = {
         "from left to right, with units outside of the fractions before them": _Way(usual, by_whole=False),
         ONE_PER_SECOND: _Way(usual - {"Hz"}),
+        "with lb for the force lbf": _Way(usual | ({"lb"} & names)),
         STANDARD_GRAVITY: _Way(usual | ({"g"} & names)),
     }
     others = ((words, _read(plain, way)) for words, way in ways.items())

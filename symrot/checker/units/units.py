@@ -27,7 +27,7 @@ DERIVED = {
     "kg m^2 s^-2": ("J", "kJ", "MJ", "GJ", "Wh", "kWh"),
     "kg m^2 s^-3": ("W", "kW", "MW", "GW", "hp"),
     "kg m^-1 s^-2": ("Pa", "kPa", "MPa", "GPa", "bar", "atm"),
-    "kg": ("kg", "g", "mg", "slug", "lbm"),
+    "kg": ("kg", "g", "mg", "slug", "lbm", "lb"),
     "m": ("m", "mm", "cm", "km", "um", "in", "ft", "yd", "mile"),
     "m s^-1": ("mph", "knot"),
     "s": ("s", "ms", "us", "min", "h", "d"),
