@@ -137,6 +137,9 @@ def test_words_about_a_body_that_are_not_understood_leave_a_claim_open(text, bod
     ("I = 2/3 m r^2", "hollow sphere", "true", ""),
     ("I = 2/5 m r^2", "hollow sphere of radius r about a diameter", "false", ""),
     ("I = m r^2", "thin-walled cylinder of radius r about its axis", "true", ""),
+    ("I = m (a^2 + b^2)/12", "plate of length a and width b about its centre", "true", ""),
+    ("I = m L^2/3", "rod of length L hinged at one end", "true", ""),
+    ("I_zz = m r^2/2", "solid cylinder of radius r about the z axis", "true", ""),
     ("I = m r^2", "hollow cylinder of radius r", "recognised", ""),
 ))  # fmt: skip
 def test_dimensions_in_words_have_their_factors(text, body, verdict, repair):

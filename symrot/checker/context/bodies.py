@@ -181,13 +181,14 @@ _NOUNS = {
     "radius": ("base radius", "radius"), "length": ("length", "height"), "height": ("height", "length"),
     "inner": ("inner radius",), "outer": ("outer radius",), "ring": ("ring radius", "radius"),
     "tube": ("tube radius",), "base": ("base",), "apex": ("apex",), "bottom": ("bottom radius",),
-    "top": ("top radius",),
+    "top": ("top radius",), "a": ("length",), "b": ("width", "breadth"), "c": ("height", "thickness", "depth"),
 }  # fmt: skip
 """Name of a dimension of a shape -> the nouns for it, as in "of height h"; a diameter has "diameter" for "radius"."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
-    r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]|in plane (of )?x,?( and)? y|free to rotate)(?![\w-])"
+    r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]|in plane (of )?x,?( and)? y"
+    r"|free to rotate|hinged|pivoted)(?![\w-])"
 )
 """Words about a body that change none of its formulas."""
 

@@ -192,7 +192,7 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
     ),
     "about its axis": (
         ("axis", "symmetry axis", "axis of symmetry", "own axis", "longitudinal axis", "figure axis", "geometric axis",
-         "cylinder axis", "polar axis"),
+         "cylinder axis", "polar axis", "z axis", "z-axis"),
         {**dict.fromkeys(ROUND, (CENTRE, "z")), **dict.fromkeys(BALLS, (CENTRE, "xyz")),
          "a conical shell": ("about the tip", "z")},
     ),
