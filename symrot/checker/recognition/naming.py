@@ -211,6 +211,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         tried.add(near.tree)
         if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
+        if _says_too_little(claim, named, near):
+            continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
@@ -224,6 +226,17 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         repairs=tuple(repair for repair, _ in repairs.values()),
         recognised_as=readings,
     )
+
+
+def _says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether a moment of inertia without an axis may be that of another body, which symrot does not have."""
+    is_bare = re.fullmatch("[IJ]", named.name) is not None
+    return is_bare and claim.context.body is None and _is_of_body(near.code, near.known.name)
+
+
+def _has_diameter(known: Identification) -> bool:
+    """Return whether the letter of a diameter, d or D, stands for the radius in the reading of a formula."""
+    return any(old in ("R", "R_1", "R_2") and new[:1] in ("d", "D") for old, new in known.mapping.items())
 
 
 def _is_of_body(code: str, known: str) -> bool:
@@ -381,6 +394,7 @@ def _readings_of_formula(
         if ending_of(known.name) == ending
         and _fits(named, known, is_matrix(value))
         and _fits_context(claim.context, named, known, letters)
+        and not _has_diameter(known)
     ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
