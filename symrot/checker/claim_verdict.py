@@ -94,7 +94,7 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
 def _on_name(
     claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
 ) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that gives a formula for a quantity without a definition; None for other claims.
+    """Return (None, verdict) for a claim that gives a formula for an undefined quantity; None for other claims.
 
     The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
     """
@@ -116,7 +116,7 @@ def _on_name(
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that is a known relation, such as an impulse equation; None for other claims."""
+    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None."""
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming import verdict_on_relation
@@ -127,7 +127,7 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return the verdict on a claim that names a quantity if the definitions in its hypotheses are put in; or None."""
+    """Return (None, verdict) for a claim that names a quantity once its hypotheses are substituted; otherwise None."""
     expanded = claim.expanded
     if expanded is claim or expanded.hypotheses:
         return None

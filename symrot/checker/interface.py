@@ -69,7 +69,7 @@ def check(
         The whole claim as text, ``"left == right"`` in the language of claims or LaTeX (text with a backslash): names
         are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
-        The right side, with a left side of SymPy.
+        The right side, if ``left`` is a SymPy value.
     assume : sequence
         Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
         for SymPy.

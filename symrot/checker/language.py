@@ -52,7 +52,7 @@ def markdown_table(rows: Sequence[Sequence[str]]) -> str:
 
 
 def help_text() -> str:
-    """Return the language as plain text, for the command line."""
+    """Return the description of the language as plain text, for the command line."""
     parts = [textwrap.fill(INTRODUCTION, WIDTH)]
     for title, rows in tables().items():
         parts.append("\n".join([f"{title}:", *_plain_rows(rows[1:])]))

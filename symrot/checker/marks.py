@@ -19,7 +19,7 @@ TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\W\d]\w*|\d+(?:\.\d+)?|\*\*|==|\s+|.", re
 
 
 def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
-    """Return the pieces of a repair that differ from the claim; where something is left out, the sign beside the gap.
+    """Return the positions of the pieces of a repair that differ from the claim; for a gap, of the sign next to it.
 
     Examples
     --------

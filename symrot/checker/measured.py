@@ -136,7 +136,7 @@ def _decimal(tree: Node, source: str, pattern: str = r"\d+\.\d+") -> tuple[str, 
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return the verdict with a note, or a diagnosis, on angles that are numbers without pi: are they in degrees?"""
+    """Return the verdict with a note, or a diagnosis, on angles that are plain numbers and may be in degrees."""
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation
@@ -168,7 +168,7 @@ def _is_large_angle(node: Node) -> bool:
 
 
 def _degrees(tree: Node) -> Node:
-    """Return a tree in which the large angles are in degrees."""
+    """Return a tree in which large angles are taken as degrees and converted to radians."""
     args = tuple(map(_degrees, tree.args))
     if _is_large_angle(tree):
         args = (product([tree.args[0], Node("name", "pi"), number(Fraction(1, 180))]),)

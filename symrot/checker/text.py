@@ -1,7 +1,7 @@
 """The verdict on a text as people type it, on its usual interpretation (reading).
 
-A sentence reports each reading with another verdict. A chain ``a = b = c`` is decided link by link, and several lines
-one by one; a line that gives a name to a formula defines the name for the lines after it.
+A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided link by link, and several
+lines are decided one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
 import re
@@ -112,10 +112,10 @@ def verdict_on_readings(
             continue
         verdicts.append((reading, verdict))
         if stated and verdict.verdict in ("true", "false") and verdict.recognised_as:
-            break  # with the meaning stated, the other readings mean nothing else
+            break  # the stated meaning leaves no other reading
     of_usual = readings[0] in [reading for reading, _ in verdicts]
     if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
-        raise refusal  # an unusual reading accuses nobody
+        raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if verdicts[0][1].verdict == "definition":
@@ -332,7 +332,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: one name has two indices of others."""
+    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: other names share a pair's index."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -383,9 +383,9 @@ def _on_parts(
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several equations that are conditional, with the conditions of all of them.
+    """Return the verdict on several conditional equations, with the conditions of all equations.
 
-    With ``both_signs``, the equations are the two that one with ± means, each with its own condition.
+    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
@@ -400,7 +400,7 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
     """Return the verdicts on the links of a chain ``name = a = b``.
 
     The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
-    L^2/(2*I) of one body are equal by what L is. Such a link is decided as ``name = b``.
+    L^2/(2*I) of one body are equal because of what L means. Such a link is decided as ``name = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

@@ -52,10 +52,10 @@ class Finding:
     right : str
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
-        The trees of the claim by place, and the corrected ones of them.
+        The trees of the claim by place, and the corrected trees.
     conditions : tuple of str
-        Conditions that the document does not state, and that quantities with their usual signs may break. A formula
-        that is true needs all of them, a conditional one any of them.
+        Conditions that the document does not state, and that quantities with their usual signs may break. A true
+        formula needs all of these conditions; a conditional formula needs any one of them.
     """
 
     claim: dict[str, Any]
@@ -88,9 +88,9 @@ def findings(
 
 
 def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str]) -> Finding:
-    """Return the result of checking one claim, with its data, and with a proposed correction, which may be empty."""
+    """Return the result of checking one claim with its ``data``; the proposed correction may be empty."""
     if "editable" not in data:
-        claim = replace(claim, editable=("left",))  # what a document prints stands on the left
+        claim = replace(claim, editable=("left",))  # the left side is what the document prints
     lost = data.get("lost", [])
     readings = tuple(other for other in claim.alternatives if _is_reading(claim, other, lost))
     claim = replace(claim, alternatives=readings)
@@ -118,8 +118,8 @@ def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mappi
 def _may_be_broken(condition: str) -> bool:
     """Return whether quantities with their usual signs may break a condition.
 
-    It is one on an angle, such as ``sin(theta) != 0``, or an inequality with a difference, or one between two
-    quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment is positive by its meaning.
+    Such a condition is about an angle, as ``sin(theta) != 0`` is, or is an inequality with a difference or between two
+    quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment of inertia is positive by its meaning.
     """
     sign, *trees = read_relation(condition)
     sides = [[node for _, node in walk(tree)] for tree in trees]
@@ -132,7 +132,7 @@ def _may_be_broken(condition: str) -> bool:
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
-    """Return the corrected parts of a claim: a proposal, once it is proven, or the nearest repair; else nothing.
+    """Return the corrected parts of a claim, by place: a proven proposal or the nearest repair; empty without these.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[st
 
 
 def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]) -> bool:
-    """Return whether two formulas differ only in characters that were lost, or in the order of what was reordered.
+    """Return whether two formulas differ only in lost characters, or in their order if ``lost`` has "token order".
 
     Examples
     --------
@@ -212,7 +212,7 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return what the extraction leaves of a formula."""
+    """Return a formula without the characters, of the kinds ``lost``, that an extraction loses."""
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

@@ -43,7 +43,7 @@ class Repair:
     code : str
         Key of the table of faults.
     cost : float
-        The smaller, the nearer to the claim.
+        The distance from the claim: a smaller cost means a nearer formula.
     proven : bool
         Whether the exact engine proved it.
     edited : dict of str to str
@@ -96,7 +96,7 @@ class Dimensions:
     status : str
         ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
     text : str
-        Where they do not fit.
+        Where the units do not fit.
     units : dict of str to str
         Units that follow for names that came without a unit.
 
@@ -167,8 +167,8 @@ class Verdict:
         names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
         formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it).
     conditions : tuple of str
-        Conditions under which both sides are defined, ``"sin(theta) != 0"``; of a conditional claim the requirements
-        first.
+        Conditions under which both sides are defined, such as ``"sin(theta) != 0"``; for a conditional claim, its
+        requirements come first.
     requires : tuple of str
         Requirements of a conditional claim beyond being defined; any one of them suffices.
     counterexample : Counterexample or None
@@ -188,7 +188,7 @@ class Verdict:
     id, where, text : str
         The name of the claim, its place in a document, and its text.
     seconds : float
-        The time that it took.
+        The time that the check took.
     reading : str
         The claim as it was read, in the notation of the input; empty if it is no different from the text.
     context : str

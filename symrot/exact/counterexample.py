@@ -375,7 +375,7 @@ def _assumed(leaf: Expr, value: Any) -> bool:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Solve a hypothesis that is linear in a variable for that variable; return False if this is impossible."""
+    """Solve a hypothesis for a variable in which it is linear and store the value; return False if impossible."""
     values[generator] = Fraction(0)
     if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
         return False

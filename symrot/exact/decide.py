@@ -168,7 +168,7 @@ def normalise(case: _FormulaCase) -> None:
 
 
 def witness(case: _FormulaCase) -> None:
-    """Look for a counterexample: a rational point first, then a point with closed-form values."""
+    """Store a counterexample in ``case``, if one is found: a rational point, or else one with closed-form values."""
     case.rely_on(case.proof_rings)
     case.counterexample = case.search(rational_witness, closed_form_witness)
 

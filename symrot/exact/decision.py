@@ -128,7 +128,7 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that ``search`` finds, in the given entries (default: the unproven ones).
+        """Return the first counterexample that ``searches`` find in the entries ``places`` (default: unproven entries).
 
         A point that provably violates a hypothesis is skipped.
         """
@@ -189,7 +189,7 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Decide an equation whose open entries become equal if arguments of functions are shortened; else return None."""
+    """Return the decision "true" if open entries become equal once arguments of functions are shortened; else None."""
     ring = case.ring
     try:
         proofs = [
@@ -205,7 +205,7 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Decide an equation whose open entries become equal if inverse functions replace equal ones; else return None."""
+    """Return the decision "true" if open entries become equal once equal inverse functions are merged; else None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:

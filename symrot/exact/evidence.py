@@ -62,7 +62,7 @@ class Counterexample:
 class Requirement:
     """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative.
 
-    Those of ``signs`` that are ``strict`` must be positive.
+    The formulas ``signs`` must be nonnegative; those that are also in ``strict`` must be positive.
     """
 
     code: str

@@ -106,7 +106,7 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
+    """Return a proof of where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
 
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
     between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
@@ -138,9 +138,9 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven.
+    """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
 
-    It is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
+    The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
@@ -158,11 +158,11 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return where ``atan2(y, x)`` is an angle w, if one of y and x is a root or an absolute value.
+    """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
 
-    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), it is w for w in [0, pi] and positive r.
-    For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), it is w for w in [-pi/2, pi/2] and
-    positive r.
+    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
+    positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in
+    [-pi/2, pi/2] and positive r.
     """
     y, x = leaf.args
     for root, other_part, own, other_function, ends in (

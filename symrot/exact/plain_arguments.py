@@ -19,7 +19,7 @@ __all__ = ["proof_by_arguments", "with_plain_arguments"]
 FUNCTIONS = (*TRIGONOMETRIC, *REWRITTEN, *INVERSE, sympy.exp, sympy.log, sympy.Abs)
 
 MOST_LEVELS = 4
-"""Functions inside each other whose arguments are shortened, from the inside out."""
+"""The most levels of nested functions whose arguments are shortened, from the inside out."""
 
 MOST_COMPARED = 8
 """The most arguments that are compared with each other."""

@@ -93,7 +93,7 @@ def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return the expressions of a chain without those that repeat the expression before."""
+    """Return the expressions of a chain without repetitions of the expression before."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:
@@ -127,7 +127,7 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
 
 
 def _angles(ring: FormulaRing, side: Expr) -> Iterator[tuple[Expr, Expr]]:
-    """Yield each trigonometric function of a side, with its value in sines and cosines of base angles."""
+    """Yield each trigonometric call in one side of an equation, with its value in sines and cosines of base angles."""
     base = {base_angle(atom, coefficient) for atom, coefficient in ring.bases.items()}
     for node in sorted(side.atoms(*TRIGONOMETRIC), key=str):
         if not (isinstance(node, (sin, cos)) and node.args[0] in base):

@@ -1,4 +1,4 @@
-"""Verdicts on claims: what is true is said to be true with its conditions, what is false comes with a point.
+"""Verdicts on claims: a true claim is called true with its conditions, a false claim comes with a point.
 
 Every counterexample is evaluated again here, by mpmath, from the text of the claim; no code of the checker takes part.
 """
@@ -68,7 +68,7 @@ def number(source):
 
 @workdps(40)
 def values_at(claim, values):
-    """Both sides by mpmath, straight from the text (scalars only); angles given by cosine and sine are recovered."""
+    """Return both sides' values, computed by mpmath from the text (scalars only); cosines and sines give the angles."""
     names = {f: getattr(mp, f) for f in ("sin", "cos", "tan", "cot", "sqrt", "pi")} | {"abs": abs}
     for key, value in values.items():
         found = mp.mpf(eval(re.sub(r"(\d+)", r"mpf(\1)", value), {"mpf": mp.mpf, "pi": mp.pi, "sqrt": mp.sqrt}))

@@ -109,7 +109,7 @@ def claims_file(tmp_path, *lines):
 
 @pytest.mark.parametrize("printed", ["left", "right"])
 def test_a_repair_edits_the_side_that_may_be_edited_and_no_other(tmp_path, printed):
-    """The formula of a moment, printed without its half: the integral that it is measured against stays as it is."""
+    """A moment of inertia is printed without its factor 1/2: the integral with which it is compared is not changed."""
     sides = {"left": "M*R**2", "right": "integrate(M/(2*pi*R)*y**2*R, (f, 0, 2*pi))"}
     if printed == "right":
         sides = {"left": sides["right"], "right": sides["left"]}
@@ -161,7 +161,7 @@ def test_two_runs_offer_the_same():
     assert (first.repairs, first.diagnosis) == (second.repairs, second.diagnosis)
 
 
-# -- the sieve --------------------------------------------------------------------------------------------------------
+# -- the numeric filter -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("formula", "value"), [

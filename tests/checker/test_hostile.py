@@ -166,7 +166,7 @@ def test_a_hostile_file_is_refused_in_one_sentence(content, words, tmp_path, cap
 
 
 def test_nothing_is_evaluated_as_python(tmp_path):
-    """In a process of its own, with a guard against hanging only."""
+    """The claims are checked in a separate process, with a guard against hanging."""
     mark = tmp_path / "mark"
     attacks = [f"__import__('pathlib').Path('{mark}').touch() == 1", f"open('{mark}', 'w') == 1", "exec('1') == 1"]
     for attack in attacks:
@@ -204,7 +204,7 @@ HEAVY = {
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("text", HEAVY.values(), ids=HEAVY)
 def test_what_cannot_be_multiplied_out_is_disproved_as_it_is_written(text):
-    """The budgets are counts, so a machine that gets here does so after the same work as any other."""
+    """The budgets are counts, so every machine does the same work before it gives up multiplying out."""
     verdict = symrot.check(text)
     assert verdict.verdict == "false"
     assert verdict.counterexample is not None

@@ -1,4 +1,4 @@
-"""Claims under hypotheses of any polynomial kind: refused where nothing obeys them, false with an exact point of them.
+"""Claims under polynomial hypotheses: refused if no point obeys these, false with an exact point that obeys these.
 
 Every point is put into the hypotheses and the claim again by mpmath, from their texts.
 """
@@ -109,7 +109,7 @@ TRUE = (
 
 @pytest.mark.parametrize(("claim", "given"), TRUE, ids=[f"{claim} given {given}" for claim, given in TRUE])
 def test_what_follows_for_real_numbers_is_true_without_a_note(claim, given):
-    """In the ideal, up to a power, after division by what is not zero, or by the sign of the symbols."""
+    """A power of left - right is in the ideal, perhaps after division by a nonzero formula, or signs decide."""
     verdict = symrot.check(claim, assume=given)
     assert (verdict.verdict, verdict.notes) == ("true", ())
 
@@ -120,7 +120,7 @@ def test_a_condition_that_the_hypotheses_exclude_is_not_offered():
 
 
 def test_a_verdict_without_a_known_point_says_so():
-    """x^2 + y^2 = 3 z^2 has the origin only among rationals; a point off it is irrational, and found."""
+    """The origin is the only rational point of x^2 + y^2 = 3 z^2; an irrational point is found."""
     assert symrot.check("z == 1", assume=["x**2 + y**2 == 3*z**2", "z != 0"], repair=False).verdict == "false"
     hard = "x**6 + y**6 + z**6 - 3*x**2*y**2*z**2 + x**2*y + 7 == 0"
     verdict = symrot.check("x + y == y + x", assume=[hard])
@@ -163,7 +163,7 @@ def test_a_groebner_basis_stops_at_its_budget():
 
 
 def test_random_hypotheses_never_give_a_wrong_verdict():
-    """A planted point obeys the hypotheses: what fails there is not true, and they are not refused."""
+    """A planted point obeys the hypotheses: a claim that fails there is not called true, and none is refused."""
     source = Random(11)
     names = ("x", "y", "z")
     for _ in range(25):
@@ -180,7 +180,7 @@ def test_random_hypotheses_never_give_a_wrong_verdict():
 
 
 def test_a_square_over_a_root_is_known_not_to_be_negative():
-    """Found by the campaign: the sign of the root is that of a square, which is no condition."""
+    """The root has the sign of a square, so that its sign is no condition."""
     claim = "cos(a)**2/abs(cos(a))*x == sqrt((1 - 2*sin(a/2)**2)**2)*x"
     assert symrot.check(claim).verdict == "true"
     wrong = symrot.check("cos(a)*x == sqrt((1 - 2*sin(a/2)**2)**2)*x", repair=False)

@@ -1,4 +1,4 @@
-"""What a formula is, up to names, transposition, sign and storage order; whatever is named is proven."""
+"""Names of formulas, up to renaming, transposition, sign and storage order; every name that is given is proven."""
 
 import json
 
@@ -51,7 +51,7 @@ def test_what_has_no_value_is_outside():
 
 
 def test_the_file_is_as_printed():
-    """The part that is not of derivations, which take longer."""
+    """The part without the steps of derivations, which take longer."""
     printed = known_formulas.page(known_formulas.stated())
     assert known_formulas.FILE.read_text(encoding="utf-8").startswith(printed)
 
@@ -67,7 +67,7 @@ def test_the_whole_file_is_as_printed():
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_sequence_is_recognised_under_other_names(sequence):
-    """Matrix, passive matrix and both rate Jacobians, in angles of another name."""
+    """The matrix, the passive matrix and both rate Jacobians are recognised in angles with other names."""
     angles = (a, b, c)
     dcm = symrot.dcm(sequence, angles)
     kind = "intrinsic" if sequence.isupper() else "extrinsic"
@@ -136,7 +136,7 @@ def test_bad_formulas_are_refused(formula, words):
 
 
 def test_a_false_claim_is_told_which_formula_it_holds(tmp_path):
-    """The body-frame rates against the space-frame Jacobian: wrong, and the note says what stands there."""
+    """The claim has the space-frame Jacobian for the body-frame rates: it is false, and a note names that Jacobian."""
     path = tmp_path / "claims.toml"
     path.write_text(
         "schema = 1\n[[claim]]\nid = 'rates'\nsymbols = ['t']\nfunctions = ['phi', 'theta', 'psi']\n"

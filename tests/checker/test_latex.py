@@ -1,4 +1,4 @@
-"""LaTeX in, the same equation out, or a refusal with the place: nothing is dropped and nothing is chosen."""
+"""LaTeX is read as the same equation or refused with a position: nothing is dropped and nothing is guessed."""
 
 import re
 
@@ -56,7 +56,7 @@ def test_latex_is_read_as(latex, text):
 
 @pytest.mark.parametrize(("latex", "text"), READINGS)
 def test_no_symbol_is_dropped(latex, text):
-    """Every letter of the source that is no part of a command is in the text, as often, but for signs of differentiation."""
+    """Every letter of the source outside of commands occurs in the text equally often, except signs of derivatives."""
     latex = re.sub(r"(?<=\\,)d(?=[a-z\\])|_\{?\w+\}?", " ", latex)
     commands = re.sub(
         r"\\(mathrm|operatorname|text)\{?[a-z]*\}?|\\begin\{array\}\{\w*\}|\\(begin|end)\{\w*\}|\\[A-Za-z]+", " ", latex
@@ -112,7 +112,7 @@ def test_vectors_are_refused_where_they_make_no_sense(latex, words):
         read_latex(latex, "", VECTORS)
 
 
-PAPERS = (  # as they stand in books and papers on rotating bodies
+PAPERS = (  # as books and papers on rotating bodies print them
     (r"I_1\dot\omega_1 - (I_2-I_3)\omega_2\omega_3 = N_1", "I_1*diff(omega_1(t), t) - (I_2 - I_3)*omega_2*omega_3 == N_1"),
     (r"\omega_x = \dot\phi \sin\theta\sin\psi + \dot\theta\cos\psi", "omega_x == diff(phi(t), t)*sin(theta(t))*sin(psi) + diff(theta(t), t)*cos(psi)"),
     (r"T = \tfrac12 I_1(\dot\phi^2\sin^2\theta + \dot\theta^2)", "T == 1/2*I_1*(diff(phi(t), t)**2*sin(theta(t))**2 + diff(theta(t), t)**2)"),

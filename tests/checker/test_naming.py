@@ -165,7 +165,7 @@ def test_a_fault_in_a_formula_for_a_multiple_or_a_rate_is_named(claim, repaired)
     "M dt = I dω", "tan(beta) = cos(theta)*tan(alpha)",
 ])  # fmt: skip
 def test_a_relation_of_quantities_is_not_called_false(claim):
-    """It holds by what its letters mean, or not; nothing here says what they mean."""
+    """Whether it holds depends on what its letters mean, and nothing in the claim says what they mean."""
     assert symrot.check(claim).verdict == "definition"
 
 
@@ -182,7 +182,7 @@ def test_a_wrong_identity_stays_false(claim):
     "L_x = I_xx omega_x + I_xy omega_y + I_yz omega_z", r"\omega_3 = \dot\theta_1\sin\theta_2 + \dot\theta_2",
 ])  # fmt: skip
 def test_no_renaming_tears_axes_or_angles_from_their_names(claim):
-    """Each would be a known formula if some of its axes were exchanged, and others not."""
+    """Each claim would be a known formula if only some of its axes were exchanged."""
     assert symrot.check(claim).verdict != "recognised"
 
 

@@ -1,4 +1,4 @@
-"""A slice of the campaign against diagnosis, and every code of a diagnosis from a formula that a book might print."""
+"""A part of the campaign that tests diagnoses, and for every code of a diagnosis a formula that a book might print."""
 
 from dataclasses import replace
 from random import Random
@@ -56,7 +56,7 @@ ELSEWHERE = {"none", "domain", "dimension", "exponent"}
 
 
 def same_text(first, second):
-    """Whether two claims are the same up to the order of terms and scalar factors."""
+    """Return whether two claims are the same up to the order of terms and scalar factors."""
     sides = [
         [canonical(read_expression(side), lambda node: False) for side in claim.split(" == ")]
         for claim in (first, second)
@@ -90,7 +90,7 @@ def test_a_conditional_claim_is_not_repaired_by_adding_the_difference(claim):
 
 @pytest.fixture
 def statements(monkeypatch):
-    """The formulas with products alone: the steps of all derivations are for the long campaign."""
+    """The formulas with products only; the steps of all derivations are left to the long campaign."""
     pool = tuple(claims_of_statements())
     monkeypatch.setattr(module, "catalogue_claims", lambda: pool)
     return pool
@@ -121,7 +121,7 @@ def test_every_kind_of_fault_has_places_in_the_catalogue_and_changes_the_claim(s
 
 
 def test_a_wrong_repair_is_caught(statements, monkeypatch):
-    """A diagnosis that offers the claim itself: not proven, never the original, and the command fails."""
+    """If a diagnosis offers the claim itself, this is not proven and is not the original, and the command fails."""
 
     def wrong(claim, decision):
         return symrot.check("x == y").diagnosis, (Repair(claim.text, "factor", 1.0),)

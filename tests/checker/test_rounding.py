@@ -1,4 +1,4 @@
-"""Decimal numbers in claims: right if the value rounds to them, wrong with the digits to which it does."""
+"""Decimal numbers in claims: right if the value rounds to them, otherwise wrong, with the right digits."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Units beside the verdict: contradictions are found, whatever can be made to fit fits, the verdict does not change."""
+"""The check of units: contradictions are found, units that may fit are accepted, and the verdict does not change."""
 
 import json
 import re
@@ -27,7 +27,7 @@ LETTERS = {"t": "s", "m": "kg", "g": "m/s^2"}
 
 
 def physical(claim):
-    """The unit of the first of these letters in a claim, which makes the others have their conventional units."""
+    """Return the unit of the first of these letters in a claim, which gives the others their conventional units."""
     return {letter: LETTERS[letter] for letter in re.findall(r"\b[tmg]\b", claim)[:1]}
 
 
@@ -54,13 +54,13 @@ def test_what_is_no_unit_is_refused(text):
 
 
 def test_every_symbol_of_symrot_has_a_unit_that_is_read():
-    """Those of a vector of any kind have none."""
+    """The symbols of a vector of any kind have no unit."""
     for unit in filter(None, symbols.UNIT.values()):
         read_unit(unit)
 
 
 def test_custom_agrees_with_the_symbols_of_symrot():
-    """Where a book and symrot use one name, they mean one unit."""
+    """Where a book and symrot use the same name, they mean the same unit."""
     own = {symbol.name: unit for symbol, unit in symbols.UNIT.items()}
     shared = [name for name in own if conventional_unit(name)]
     assert len(shared) > 25
@@ -82,7 +82,7 @@ def test_equations_between_units_are_solved_over_the_rationals():
 
 
 def test_a_true_identity_with_terms_of_two_units():
-    """Algebra is right, the units are not: the verdict stays true and the line beside it says where."""
+    """The algebra is right, but the units are not: the verdict stays true, and the line on units says where."""
     verdict = symrot.check("x*(1 + x) == x + x**2", units={"x": "m"})
     assert verdict.verdict == "true" and verdict.diagnosis.code == "none"
     assert verdict.dimension.status == "inconsistent"

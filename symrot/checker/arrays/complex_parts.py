@@ -19,11 +19,11 @@ MOST_FACTORS = 16
 
 
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
-    """Return a letter i, j or I that is the imaginary unit, where it occurs; None if no formula has one.
+    """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
 
-    It is in an exponent of e or in exp(..), or it is a factor of nothing but numbers and sines. A letter i or j is also
-    the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and its conjugate, and if it
-    is inside of a sine next to hyperbolic functions.
+    The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and cosines.
+    A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and
+    its conjugate, or if they have circular and hyperbolic functions and it is inside one of these.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     for letter in LETTERS:
@@ -37,7 +37,7 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the place of a letter that can only be the imaginary unit, because of the other formulas; or None."""
+    """Return the node of a letter that can only be the imaginary unit, because of the other formulas; or None."""
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
@@ -80,9 +80,9 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return the equation of the real and imaginary parts of both sides, as columns of two entries.
+    """Return an equation of two columns, each with the real and the imaginary part of one side.
 
-    A side that is a single name stays as it is: the equation only names the other side.
+    A side that is a single name stays as it is, since such an equation only names the other side.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names that a text uses as matrices and columns without a definition, and vectors that mean their lengths.
+"""Names that a text uses as matrices and columns without a definition, and names of vectors that mean lengths.
 
 ``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` make matrices of 3 x 3 entries of the capital letters; a small letter
 with a transpose is a column.
@@ -33,12 +33,12 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
 
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
-    """Return the names that are defined as matrices of any 3 x 3 entries."""
+    """Return the names that are defined as matrices of 3 x 3 independent entries."""
     return [name for name, tree in definitions if tree == matrix_of_entries(name)]
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions in which the matrices ``names`` are rotations about any axis."""
+    """Return definitions in which the matrices ``names`` are general rotations."""
     return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
 
 
@@ -55,7 +55,7 @@ def _list(members: Sequence[Node]) -> Node:
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
     """Return the names, in capital letters, that the sides of a claim use as matrices and that are not ``known``.
 
-    The name of the unit matrix is none of them, unless it is the only argument of a determinant or trace.
+    The name of the unit matrix is not among them, unless it is the only argument of a determinant or trace.
     """
     names: dict[str, None] = {}
     for side in sides:
@@ -71,9 +71,9 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return which of the names of vectors, in capital letters, are matrices, and whether they depend on time.
+    """Return the names of vectors, in capital letters, that are in fact matrices, and whether each depends on time.
 
-    They are on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``.
+    Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``.
     """
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
@@ -147,9 +147,9 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation in which a vector means its length where a vector makes no sense, and these vectors.
+    """Return a relation with lengths in place of vectors where only a scalar makes sense, and these vectors' names.
 
-    It makes none in a product of two columns, ``a b sin(x)``, or in a sum with a scalar.
+    Only a scalar makes sense in a product of two columns, ``a b sin(x)``, and in a sum with a scalar.
     """
     lengths = _Lengths(shapes)
     sign, left, right = relation
@@ -163,7 +163,7 @@ def with_lengths(
 
 
 class _Lengths:
-    """The reader of lengths: it notes the names that it reads as lengths."""
+    """The change of vectors into their lengths; ``names`` collects the vectors that were changed."""
 
     def __init__(self, shapes: Mapping[str, Shape]) -> None:
         self.shapes = shapes
@@ -179,7 +179,7 @@ class _Lengths:
         return node
 
     def scalar(self, node: Node) -> Node:
-        """Return a product in which each column that is a name is its length."""
+        """Return a tree in which the length replaces each vector that is a factor."""
         if node.kind == "name" and self.shapes.get(str(node.value)) == COLUMN:
             self.names.append(str(node.value))
             return Node("call", "sqrt", (Node("call", "dot", (node, node), node.span),), node.span)

@@ -47,6 +47,7 @@ def used_quaternions(
     shapes : mapping
         The shapes of the names that are defined.
     known : collection of str
+        The names that are defined.
     """
     sign, *sides = relation
     if _has_units(sides, (*vectors, *known)):
@@ -72,7 +73,7 @@ def used_quaternions(
 
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
-    """Return whether a claim is one on the units i, j and k alone, as ``i² = j² = -1`` and ``i j = k``."""
+    """Return whether the only names of a claim are the quaternions i, j and k, as in ``i² = j² = -1``, ``i j = k``."""
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
@@ -81,7 +82,7 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return a relation of the units i, j and k as one of quaternions."""
+    """Return a relation between i, j and k, with these units as quaternions."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
@@ -114,7 +115,7 @@ def quaternion_product(left: Node, right: Node) -> Node:
 
 
 def _bare(node: Node) -> Node:
-    """Return the name q for q(t)."""
+    """Return the node of the name q for q(t), and any other node unchanged."""
     return Node("name", node.value, (), node.span) if node.kind == "call" and node.args == (TIME,) else node
 
 
@@ -218,7 +219,7 @@ class _Products:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return the sides, both as quaternions: ``1`` is (1, 0, 0, 0), and a vector v is (0, v)."""
+    """Return both sides as quaternions: ``1`` becomes (1, 0, 0, 0), and a vector v becomes (0, v)."""
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)
@@ -231,7 +232,7 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 
 
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
-    """Return the definition of a quaternion, and that of its vector part if the text names that."""
+    """Return the definition of a quaternion, and the definition of its vector part if the text names this part."""
     style = "" if f"{name}0" in used or f"{name}1" in used else "_"
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)

@@ -70,7 +70,7 @@ class Definitions:
     divisors, radicands : tuple
         Formulas that the texts of the definitions divide by, or take even roots of.
     bases : tuple of Expr
-        Bases of powers whose exponents are no numbers.
+        Bases of powers whose exponents are not numbers.
     """
 
     values: Mapping[str, Any]
@@ -99,7 +99,7 @@ class Claim:
     printed : str
         The decimal number that a document prints for ``value``.
     alternatives : tuple of Relation
-        Other readings of a document that lost characters.
+        Other equations that the text may stand for, if the document lost characters.
     implied : bool
         Whether undeclared names become real symbols and functions of time.
     sources : mapping
@@ -137,12 +137,12 @@ class Claim:
 
     @property
     def without_context(self) -> "Claim":
-        """The claim without what is said about it in words."""
+        """The claim without its context, the words about its names and its body."""
         return replace(self, context=NO_CONTEXT)
 
     @property
     def defining(self) -> dict[str, Node]:
-        """The names that hypotheses define by a formula for a scalar, as ``c1 == cos(alpha)``, with the formula."""
+        """The names that hypotheses such as ``c1 == cos(alpha)`` define by a scalar formula, each with its formula."""
         definitions: dict[str, Node] = {}
         for sign, left, right in self.hypotheses:
             inside = {str(node.value) for _, node in walk(right) if node.kind in ("name", "call")}
@@ -151,7 +151,7 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a value in which the formulas of :attr:`defining` stand for their names."""
+        """Return a SymPy value in which each name of :attr:`defining` is replaced by its formula."""
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -159,7 +159,7 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim with the formulas of :attr:`defining` for their names, without the hypotheses that define them."""
+        """The claim in which formulas replace the names of :attr:`defining`, without the hypotheses for these names."""
         definitions = self.defining
         if self.relation is None or not definitions:
             return self
@@ -184,7 +184,7 @@ class Claim:
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
         """Return the claim with another equation.
 
-        ``changes`` are new values of other fields; definitions must not depend on these.
+        ``changes`` are new values of other fields, on which the definitions must not depend.
         """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
@@ -192,7 +192,7 @@ class Claim:
         return other
 
     def with_parts(self, parts: Mapping[str, Node]) -> "Claim":
-        """Return the claim with other trees of some of its parts: ``"left"``, ``"right"`` or names of definitions."""
+        """Return the claim with new trees for some of its parts: ``"left"``, ``"right"`` or names of definitions."""
         assert self.relation is not None
         sign, left, right = self.relation
         relation = (sign, parts.get("left", left), parts.get("right", right))
@@ -203,7 +203,7 @@ class Claim:
 
     @cached_property
     def definitions(self) -> Definitions:
-        """The symbols, positive where a hypothesis says so, and the definitions.
+        """The symbols and definitions as SymPy values; a symbol is positive if a hypothesis says so.
 
         Raises
         ------
@@ -270,7 +270,7 @@ class Claim:
 
 
 def _substituted(tree: Node, definitions: Mapping[str, Node]) -> Node:
-    """Return a tree with formulas in place of names."""
+    """Return a tree in which names are replaced by their formulas in ``definitions``."""
     if tree.kind == "name" and tree.value in definitions:
         return definitions[tree.value]
     return replace(tree, args=tuple(_substituted(child, definitions) for child in tree.args))
@@ -305,7 +305,7 @@ def _assumed(hypotheses: Sequence[Relation], sign: str) -> set[str]:
 
 
 def _hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis; ``words`` are names of the claim that it holds as they are, not as products of letters."""
+    """Return a hypothesis, read from text; ``words`` are names of the claim, never split into products of letters."""
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:
@@ -416,14 +416,14 @@ def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return the name and the formula of a hypothesis that defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does."""
+    """Return name and formula of a hypothesis that defines a matrix, ``R == R_z(psi)*R_y(theta)``; otherwise None."""
     sign, left, right = _hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield the matrices that hypotheses define, and their entries that a claim names: R_31, R31 and r_31 of R."""
+    """Yield definitions: of matrices in hypotheses, and of the entries of R that a claim names R_31, R31 or r_31."""
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
@@ -436,9 +436,9 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with its unit matrices, its vectors, and whether it has unit matrices.
+    """Return a relation whose unit matrices are written ``eye(n)``, its vectors, and whether it has unit matrices.
 
-    A name that is added to vectors is a vector too; a name of an inertia, added to matrices, is a tensor.
+    A name that is added to a vector is a vector too. The name of an inertia, added to a matrix, is a tensor.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
@@ -463,7 +463,7 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns that a relation uses without a definition, with one for each."""
+    """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
@@ -486,7 +486,7 @@ def _on_matrix(name: str) -> str:
     """Return the note on a name that is read as a matrix."""
     return (
         f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
-        f"a rotation is said as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+        f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
     )
 
 
@@ -519,7 +519,7 @@ def _with_natural_base(relation: Relation) -> Relation:
 
 
 def _with_rotated_axes(relation: Relation) -> Relation:
-    """Return a relation in which ``R_x(a)`` is R_x(-a): in some books it rotates the axes, not the vectors."""
+    """Return a relation with R_x(-a) in place of ``R_x(a)``, which in some books rotates the axes, not the vectors."""
 
     def turned(node: Node) -> Node:
         args = tuple(map(turned, node.args))
@@ -688,7 +688,7 @@ def is_latex(source: str) -> bool:
 
 
 def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names f that occur as ``f(t)`` in hypotheses, or with a rate."""
+    """Return the names f that occur in hypotheses as ``f(t)`` or with a time derivative."""
     sides = [
         side
         for source in assume
@@ -718,7 +718,7 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names of a claim for the reader of LaTeX, which wants matrices and columns in sets of their own."""
+    """Return the names of a claim for the LaTeX reader, with matrices and columns in separate sets."""
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}
@@ -767,7 +767,7 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: both sides, unless the claim names them."""
+    """Return the parts of a claim that repairs may change: those that its entry lists, by default both sides."""
     parts = tuple(entry.get("editable", SIDES))
     known = (*SIDES, *(name for name, _ in define))
     for part in parts:

@@ -41,7 +41,7 @@ ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
     """Return the function that evaluates a call such as ``tan(x)``.
 
-    If the value has a divisor, ``below`` gives it: cos(x).
+    If the value has a denominator, ``below`` returns it: cos(x) for tan(x).
     """
 
     def call(scope: Scope, node: Node) -> Expr:
@@ -215,7 +215,7 @@ def _matrix(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
-    """Return the matrix of rows whose cells are scalars, or matrices that fit together; a zero fills its block."""
+    """Return a matrix from rows of scalars, or of matrices that fit together; a zero may stand for a block of zeros."""
     rows = rows if isinstance(rows, tuple) else ()
     rows = tuple(row if isinstance(row, tuple) else (row,) for row in rows)
     cells = [cell for row in rows for cell in row]
@@ -253,7 +253,7 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
-    """Return the components of a quaternion, scalar first; those of a vector follow a zero."""
+    """Return the four components of a quaternion, scalar first; a vector gets the scalar component zero."""
     value = scope.evaluate(node)
     if isinstance(value, tuple):
         value = _of_blocks(scope, node, value)
@@ -300,7 +300,7 @@ def _is_rate(value: Expr) -> bool:
 
 
 def _integrate(scope: Scope, node: Node) -> Any:
-    """Return an integral; the integral of a vector or matrix has the integrals of the entries."""
+    """Return an integral; a vector or matrix is integrated entry by entry."""
     integrand, *ranges = node.args
     limits = []
     for place in ranges:
@@ -336,7 +336,7 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral over a body that is not described: a number of its own for each product of coordinates."""
+    """Return an integral over a body of unknown shape: the integral of each product of coordinates is a new symbol."""
     value = scope.evaluate(node.args[0])
     scope.shape(value, node.args[0])
     if is_matrix(value):

@@ -1,4 +1,4 @@
-"""Definite integrals of polynomials times sines and cosines of angles linear in the variable: exactly, by parts."""
+"""Exact definite integrals, by parts, of polynomials times sines and cosines of angles linear in the variable."""
 
 from functools import lru_cache
 
@@ -23,9 +23,9 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
     integrand : Expr
         A polynomial in the variable, and in sines and cosines of angles linear in it.
     variable : Symbol
-        Real.
+        A real symbol.
     lower, upper : Expr
-        Free of the variable.
+        The limits, which must not contain the variable.
 
     Raises
     ------

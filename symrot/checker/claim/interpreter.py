@@ -29,7 +29,7 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
     "zoo", "infinity", "Infinity",
 )  # fmt: skip
-"""Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
+"""Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
 
 INSTEAD = {"I": "I_1", "E": "E_k"}
 """Such a name -> a name for the quantity that books on mechanics call by it."""
@@ -162,7 +162,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise interpreter.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q > 1:  # of odd index too: the principal value of a negative number is not real
+    if exponent.q > 1:  # roots of odd index too: the principal value of a negative number is not real
         interpreter.within_nesting(base, node.args[0])
         interpreter.take_root(base, node.args[0])
     return base**exponent

@@ -20,7 +20,7 @@ def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return the claims of a reading (an interpretation of a text): one for each line, and each link of ``a = b = c``.
+    """Return, for each line of a reading (one interpretation of a text), a list of claims: one per equals sign.
 
     A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context.
     """
@@ -56,7 +56,7 @@ def claims_of_reading(
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
-    """Return the definitions of the names in ``used``, and the definitions that these depend on, in order."""
+    """Return, in order, the definitions on which the names ``used`` depend, directly or through other definitions."""
     needed: list[tuple[str, Node]] = []
     names = set(used)
     for name, tree in reversed(define):

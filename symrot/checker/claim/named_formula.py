@@ -20,7 +20,7 @@ __all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
-"""Endings of names with a mark that says what they are of another quantity: ``theta'`` and ``z*``."""
+"""Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
 """Function of a quantity -> the function that solves for the quantity."""
@@ -30,8 +30,9 @@ class NamedFormula(NamedTuple):
     """A quantity without a definition, and the formula that a claim gives for it.
 
     ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
-    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula of the other side into the formula
-    of the quantity: k = sqrt(I/m) for k^2 = I/m. It is None if the quantity itself is ``side``.
+    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula for ``side`` into a formula for
+    the quantity: I/m into sqrt(I/m) for k^2 = I/m. It is None if the claim is not solved for one name; then ``name`` is
+    the text of ``side``.
     """
 
     name: str
@@ -62,7 +63,7 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return the sides of a claim that says how a quantity depends on another one, which nothing else says; or None.
+    """Return the two sides of a claim about the derivative of a name that nothing defines; None for other claims.
 
     ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
     """
@@ -100,7 +101,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a time derivative has a function of time inside."""
+    """Return whether a derivative is one by time, of a formula that contains a function of time."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
@@ -143,7 +144,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
-    is_whole = (left, right) == claim.relation[1:]  # not without common factors
+    is_whole = (left, right) == claim.relation[1:]  # no common factor was left out
     is_open = is_whole and _is_constraint(left, right, letters)
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
 
@@ -175,7 +176,7 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether a sum with several letters outside of functions is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
+    """Return whether an equation says that a sum with several letters is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
     if polynomial.kind != "sum" or constant.kind != "number":
         return False
@@ -185,9 +186,9 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
-    """Return whether a single product of vectors, or a length, is a number: ``a . b = 0`` says that they are normal.
+    """Return whether an equation says that a product of two vectors, or a length, is a number: ``a . b = 0``.
 
-    The length of a unit vector (``unit``) is not open.
+    If ``unit``, vectors have length one: then an equation about a length is no condition.
     """
     for side, other in ((left, right), (right, left)):
         product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
@@ -198,7 +199,7 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation of products says what kind of matrix a single name is: ``R.T*R == eye(3)``."""
+    """Return whether an equation says what kind of matrix its only name is: ``R.T*R == eye(3)`` or ``det(R) == 1``."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
@@ -208,7 +209,7 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether a relation of vectors has a single scalar, in one sine: ``a . b = |a| |b| cos(theta)``."""
+    """Return whether the only scalar in a relation of vectors is one angle: ``a . b = |a| |b| cos(theta)``."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
@@ -219,7 +220,7 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether a side has the derivative of a name without a definition by another quantity than the time."""
+    """Return whether a side differentiates a name without a definition by a quantity other than time."""
     for side in (left, right):
         for _, node in walk(side):
             if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
@@ -238,7 +239,7 @@ def _is_list_of_names(tree: Node) -> bool:
 
 
 def _factors(tree: Node) -> list[Node]:
-    """Return the factors of all terms of a sum, without powers and signs."""
+    """Return the factors of all terms of a sum, without exponents and signs."""
     if tree.kind in ("sum", "product", "neg"):
         return [factor for part in tree.args for factor in _factors(part)]
     return _factors(tree.args[0]) if tree.kind == "power" else [tree]
@@ -247,7 +248,7 @@ def _factors(tree: Node) -> list[Node]:
 def _known(claim: Claim) -> set[str]:
     """Return the names that need no formula: pi, the time t, and the names that the claim defines.
 
-    A vector that only has components of its own name is not among them.
+    A vector whose definition only names its components is not among them.
     """
     return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
@@ -272,7 +273,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the quantity that a side contains, multiplied by constants only, and how to solve for it; or None."""
+    """Return the quantity of which a side is a function, such as k in 2*k^2, and how to solve for it; or None."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":

@@ -15,11 +15,11 @@ __all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
 
 
 SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
-"""What stands between the formulas of a condition."""
+"""A sign or word between the formulas of a condition."""
 
 
 class Notation(Protocol):
-    """A way to write formulas: the one that a user chose."""
+    """The notation of the user's text, in which answers are written."""
 
     def formula(self, node: Node) -> str:
         """Return the text of a formula."""
@@ -43,7 +43,7 @@ class TypedNotation:
     plain : bool
         Whether powers are ``^`` and equations ``=``; if not, formulas are SymPy's text.
     spelling : mapping
-        Name here -> name as it is typed.
+        Name in the tree -> name as it was typed.
     timed : frozenset of str
         Functions of time that are typed without ``(t)``.
     """
@@ -137,7 +137,7 @@ def notation_of(reading: Reading) -> TypedNotation:
 
 
 END = Node("name", "")
-"""No factor, after the last one."""
+"""A stand-in for the factor after the last one."""
 
 
 def _is_number_power(node: Node) -> bool:

@@ -62,7 +62,7 @@ def _is_imaginary(product: Node, letter: str) -> bool:
 def has_natural_base(trees: Sequence[Node]) -> bool:
     """Return whether the letter e is the base of the exponential function.
 
-    It is if its exponent is not a number, and if it is the argument of a logarithm.
+    It is if e has an exponent that is not a number, or if e is in the argument of a logarithm.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")

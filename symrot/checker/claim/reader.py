@@ -33,7 +33,7 @@ MOST_DOUBTS = 40
 """The most readings of one text that are tried, and the most places with two readings that are looked at."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
-"""The signs of ``(R a)·(R b)``, with None for a name."""
+"""The tokens of ``(R a)·(R b)``, with None in place of each name."""
 
 FIRST_AND_LAST = ("i", "f")
 """Indices of the first and last value of a quantity."""
@@ -63,7 +63,7 @@ class Chain:
     signs : tuple of str
     sides : tuple of Node
     both_signs : bool
-        Whether it is one of the two that a line with ± means.
+        Whether this line is one of the two that a line with ± stands for.
     """
 
     signs: tuple[str, ...]
@@ -96,13 +96,13 @@ class Reading:
     notes : tuple of str
         Sentences about how the text is read.
     spelling : dict
-        Name here -> name as it is typed, where they differ.
+        Name in the trees -> name as it was typed, where they differ.
     timed : frozenset of str
         Names that are functions of time.
     vectors : mapping of str to bool
         Names that are vectors because of the way in which they are used; True for one with a hat.
     flipped : tuple of str
-        The places that are read in the other way than usual.
+        The excerpts of the text that are read in their less usual way.
     """
 
     lines: tuple[Chain, ...]
@@ -267,7 +267,7 @@ class _Text:
         return words
 
     def is_spaced_after(self, word: str) -> bool:
-        """Return whether a blank and another name follow each time that the text has a word."""
+        """Return whether a blank and another name follow every occurrence of a word in the text."""
         pairs = [after for token, after in pairwise(self.tokens) if token.kind == "name" and token.text == word]
         return all(after.kind == "name" and after.spaced for after in pairs)
 
@@ -380,7 +380,7 @@ class _Text:
 
 
 def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
-    """Yield the tokens of a line; a line with ± or ∓ twice, with the upper signs and with the lower ones."""
+    """Yield the tokens of a line; of a line with ± or ∓, first with the upper signs, then with the lower signs."""
     if not any(sign in token.text for token in line for sign in "±∓"):
         yield line
         return
@@ -440,7 +440,8 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
     """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
 
-    In ``a·b = |a| |b| cos x`` the names between a dot have lengths, and ``(R a)·(R b)`` multiplies two turned vectors.
+    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b are
+    vectors that a matrix R rotates.
     """
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
@@ -484,7 +485,7 @@ def _listed(words: Sequence[str]) -> str:
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
     """Return a tree with functions of time written ``f(t)``, and with tables of numbers as matrices.
 
-    Vectors are names without ``(t)``, and their squares are scalar products.
+    A vector is written without ``(t)``, and its square is a scalar product.
     """
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
@@ -651,7 +652,7 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
 def read_relation(source: str, where: str = "", declared: Declared | None = None, rates: bool = False) -> Relation:
     """Return (sign, left, right) of ``left == right``; the signs ``!= > >= < <=`` are read for hypotheses.
 
-    With ``rates``, the prime of ``x'`` is a rate of x, and never another name.
+    With ``rates``, ``x'`` is always the rate of x, never a name of its own.
 
     Raises
     ------

@@ -55,7 +55,7 @@ class Scope(ABC):
     radicands : list of Expr
         Formulas under its even roots that may be negative; evaluation adds to them.
     bases : list of Expr
-        Bases of powers whose exponents are no numbers; the powers are read for positive bases.
+        Bases of powers whose exponents are not numbers; the powers are read for positive bases.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -79,7 +79,7 @@ class Scope(ABC):
 
     @abstractmethod
     def evaluate(self, node: Node) -> Any:
-        """Return the value of a tree: Expr, ImmutableMatrix or a tuple of those."""
+        """Return the value of a tree: Expr, ImmutableMatrix or a tuple of such values."""
 
     def scalar(self, node: Node, of: str) -> Expr:
         value = self.evaluate(node)
@@ -95,7 +95,7 @@ class Scope(ABC):
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Refuse a value inside of so many functions and roots that one more would be too many."""
+        """Raise InputError for a value with so many functions and roots inside each other that one more is too many."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 

@@ -1,7 +1,7 @@
 """The shapes of the formulas of a claim, from its trees alone, and the unit matrices that a text writes as I or 1.
 
-``R R^T = I`` means the unit matrix by I, and so does ``cos(a) I + (1 - cos(a)) n n^T``; in ``L = I omega`` it is a
-moment of inertia. The shapes tell which: a scalar cannot be added to a matrix or be equal to one.
+In ``R R^T = I`` and in ``cos(a) I + (1 - cos(a)) n n^T``, I is the unit matrix; in ``L = I omega`` it is a moment of
+inertia. The shapes tell which: a scalar can neither be added to a matrix nor be equal to one.
 """
 
 from collections.abc import Mapping
@@ -91,7 +91,7 @@ def _is_name_of(name: Node, matrix: Node) -> bool:
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names, scalars so far, that are terms of a sum of vectors or matrices, with the shape of the sum."""
+    """Return the names of unknown shape that are terms of a sum of vectors or matrices, with the shape of the sum."""
     added: dict[str, Shape] = {}
     for side in relation[1:]:
         for _, node in walk(side):

@@ -27,7 +27,7 @@ MOST_PRODUCTS = 2_000
 """The most products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""
 
 LARGEST_INVERSE = 200
-"""The same for a matrix to be inverted, of which all minors are computed; a full 5 x 5 matrix has 120."""
+"""The most such products for a matrix to be inverted, since all minors are computed; a full 5 x 5 matrix has 120."""
 
 LARGE_MATRIX = 1_000
 """The number of pieces from which on the determinant of a matrix is expanded by cofactors and not shortened."""
@@ -36,7 +36,7 @@ MOST_ANGLE_TERMS = 2_000
 """The most terms of a sine, expanded into sines and cosines of the angles in its argument; a sum of eleven has 1024."""
 
 MOST_NESTED = 16
-"""Functions and fractional powers inside each other. To make a function, SymPy examines its argument: at depth 16 this
+"""The most nested functions and fractional powers. To make a function, SymPy examines its argument: at depth 16 this
 takes seconds, at depth 25 minutes."""
 
 

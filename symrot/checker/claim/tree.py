@@ -41,7 +41,7 @@ class Node:
 
 
 def number(value: int | Fraction) -> Node:
-    """Return the tree of a number; a negative one is ``neg`` of a positive one, as the reader makes it."""
+    """Return the tree of a number; -2 is ``neg`` of the number 2, as in the trees of the reader."""
     value = Fraction(value)
     return Node("neg", None, (Node("number", -value),)) if value < 0 else Node("number", value)
 

@@ -19,12 +19,12 @@ _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", 
 
 
 def decide_value(claim: Claim) -> Decision:
-    """Decide if a value lies within half a unit of the last digit of the decimal number printed for it.
+    """Return the decision whether a value lies within half a unit of the last digit of the number printed for it.
 
     Raises
     ------
     InputError
-        If the value holds symbols, or the printed text is no decimal number.
+        If the value contains symbols, or the printed text is not a decimal number.
     """
     assert claim.value is not None
     where = claim.label("value")
@@ -51,7 +51,7 @@ def decide_value(claim: Claim) -> Decision:
 
 
 def _printed(text: str, where: str) -> tuple[Fraction, Fraction]:
-    """Return the decimal number in a text, and the value of one unit of its last digit: 157.08 and 0.01."""
+    """Return the decimal number in a text, and one unit of its last digit: 157.08 and 0.01 for ``157.08``."""
     match = _DECIMAL.fullmatch(text)
     if match is None or not (match[2] or match[3]):
         raise InputError(f"{where}: expected a decimal number, got {text[:40]!r}")

@@ -1,7 +1,7 @@
 """The vectors and tensors of a claim: their components, named for them, and their lengths.
 
-A name in bold, with an arrow or with a hat is a vector, ``a`` with the components a_x, a_y and a_z; the same letter in
-plain type is its length. While LaTeX is read, ``MARK`` after a name says that the name is marked.
+A name with a mark (bold type, an arrow or a hat) is a vector, ``a`` with the components a_x, a_y and a_z; the same
+letter in plain type is its length. While LaTeX is read, the ending ``MARK`` of a name says that the name has a mark.
 """
 
 import re
@@ -45,7 +45,7 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of its components, ``Matrix([a_x, a_y, a_z])``, or of the numbers of a coordinate axis."""
+        """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
         if self.is_axis:
             return _matrix([number(int(self.name == axis)) for axis in "xyz"])
         if is_tensor(self.name):
@@ -93,9 +93,9 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without marks, and the names that had them; True for one with a hat.
+    """Return the sides of a claim without marks, and the names that had marks, each with whether it had a hat.
 
-    The name of a vector without a mark is its length.
+    Where the name of a vector has no mark, it means the length of the vector.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
     """
     plain = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
     spelled = {name: f"{name}_tensor" if is_tensor(name) and name in plain else name for name in names}
-    parts = {name for name in names if {name, f"{name}_0"} <= plain}  # of a quaternion, whose name is plain
+    parts = {name for name in names if {name, f"{name}_0"} <= plain}  # of a quaternion, whose name has no mark
     spelled |= {name: f"{name}_vec" for name in parts}
     vectors = [Node("name", name) for name in names if not is_tensor(name) and name not in parts]
     sides = [_without_marks(side, spelled, vectors) for side in sides]
@@ -176,13 +176,13 @@ def _lone_names(sides: Sequence[Node]) -> set[str]:
 
 
 def with_scalar_products(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which a.T*b, of two of the vectors ``names``, is the scalar product of a and b."""
+    """Return a tree in which the scalar product of a and b replaces a.T*b, for vectors a and b in ``names``."""
     made = replace(node, args=tuple(with_scalar_products(child, names) for child in node.args))
     return _with_scalar_products(made, [Node("name", name) for name in names]) if made.kind == "product" else made
 
 
 def _with_scalar_products(node: Node, vectors: Sequence[Node]) -> Node:
-    """Return a product in which a.T*b, of two vectors, is the scalar product of a and b."""
+    """Return a product in which the scalar product of two vectors a and b replaces a.T*b."""
     factors: list[Node] = []
     for factor in node.args:
         last = factors[-1] if factors else None

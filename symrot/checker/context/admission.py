@@ -1,4 +1,7 @@
-"""Whether a derived formula fits the context of a claim, and which words of its name the context leaves open."""
+"""Whether a derived formula fits the context of a claim, and which words of its name the context leaves open.
+
+The place of an axis is the point through which it passes; the titles of places are phrases such as "about an end".
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -64,7 +67,7 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield what the name of a derived formula says other than the context: "for the space frame", "of a box"."""
+    """Yield words of a derived formula's name that contradict the context: "for the space frame", "about an end"."""
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):
@@ -131,7 +134,7 @@ def _is_radial(name: str, quantity: str) -> bool:
 def is_component(name: str, quantity: str) -> bool:
     """Return whether the component or axis in the name of a formula is the one in the name of a quantity.
 
-    A quantity without an index may be any component; so may a rate of an angle, whose place no letter says.
+    A quantity without an index may be any component, and so may the rate of an angle.
     """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
@@ -141,7 +144,7 @@ def is_component(name: str, quantity: str) -> bool:
 
 
 def place_exists(place: str) -> bool:
-    """Return whether names of derived formulas have a place with a title."""
+    """Return whether the names of some derived formulas contain the place with this title."""
     return any(title == place and phrases for title, _, phrases in PLACES)
 
 
@@ -157,7 +160,7 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
     """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
 
-    ``mapping`` has the symbols with other names; a letter that it does not have is a symbol of that name.
+    ``mapping`` gives the renamed symbols; any other letter of the claim is the symbol of the same name.
     """
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
@@ -192,12 +195,14 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def has_order(sequence: str) -> bool:
-    """Return whether phi is the first angle of a sequence and psi the third to every reader: of ZXZ, not of ZYX."""
+    """Return whether every reader takes phi as the first angle of a sequence and psi as the third: ZXZ, not ZYX."""
     return bool(sequence) and sequence[0] == sequence[-1]
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the sequence about the other axes that makes the same rotations with its angles in reverse order.
+    """Return the sequence about fixed axes that equals one about moving axes with its angles reversed; or vice versa.
+
+    The result is an empty text for a sequence such as ZXZ.
 
     Examples
     --------
@@ -214,7 +219,7 @@ def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
         return True
     is_rate = any(re.fullmatch(r"d(phi|theta|psi|alpha|beta|gamma|varphi)", name) for name in meaning.names)
     if is_rate and symbol == "omega_3":
-        return False  # the rate of the spin angle is not the spin, which precession adds to
+        return False  # the spin is the rate of the spin angle plus a part of the precession
     return re.fullmatch(pattern, symbol) is not None
 
 
@@ -225,9 +230,9 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in the name of a derived formula that neither the context nor the name of a quantity says.
+    """Return the words in the name of a derived formula that neither the context nor the quantity's name implies.
 
-    ``stated`` are words that the name of the quantity says, such as "moment of inertia z axis" for I_zz.
+    ``stated`` are the words that the quantity's name implies, such as "moment of inertia z axis" for I_zz.
     """
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:

@@ -77,7 +77,7 @@ class Meaning:
     written : tuple of str
         The names as they were typed.
     rest : str
-        The words that say nothing that symrot uses.
+        The words that symrot does not use.
     """
 
     names: tuple[str, ...]
@@ -123,7 +123,7 @@ class Context:
 
     @property
     def place(self) -> str:
-        """The place of the axis that the words about the body say, or an empty text."""
+        """The place of the axis in the words about the body, such as "about an end", or an empty text."""
         return self.body.place if self.body else ""
 
     @property
@@ -143,7 +143,7 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str]) -> bool:
-        """Return whether all words are about names of a text."""
+        """Return whether every name with a meaning is one of the ``names`` of a text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
@@ -153,7 +153,7 @@ class Context:
                 raise InputError(f"where: expected words about names that the claim has, got {meaning.written[0]!r}")
 
     def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
-        """Return the units of names that their meanings say.
+        """Return the units of names that follow from their meanings.
 
         Raises
         ------
@@ -399,7 +399,7 @@ def read_frame(words: str, prefix: str = "") -> str:
 def read_sequence(words: str, prefix: str = "") -> str:
     """Return the sequence of angles that words name, one of :data:`symrot.conventions.SEQUENCES`.
 
-    Upper case is about the moving axes, as are numbers; lower case, or the word "space", is about fixed axes.
+    Upper case and numbers mean rotations about moving axes; lower case or the word "space" means fixed axes.
 
     Raises
     ------

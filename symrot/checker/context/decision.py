@@ -1,8 +1,9 @@
 """Verdicts in a context: with the meaning of its names stated, a claim that names a quantity is true or false.
 
-A derived formula is meant if the context, or the name of the quantity, says every word of its name. The claim is true
-if it is equal to such a formula, and false if it differs from all of them, whichever of its letters are whose. With
-words left open, the verdict stays what it is without a context, and a note names these words.
+A derived formula is meant if the context, or the name of the quantity, states every word of the formula's name. The
+claim is true if it is equal to such a formula, and false if it differs from all of them, for every assignment of its
+letters to their symbols. If some words are not stated, the verdict stays what it is without a context, and a note names
+these words.
 """
 
 import re
@@ -91,7 +92,7 @@ USUAL: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class Meant:
-    """A derived formula in the letters of a claim, with the letters for its symbols.
+    """A derived formula in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
     If ``open_place``, nothing states the place of its axis: the centre of mass, or an end.
     """
@@ -103,15 +104,15 @@ class Meant:
 
     @property
     def identification(self) -> Identification:
-        """The formula as the reading of a claim."""
+        """The derived formula as an entry of ``recognised_as`` in a verdict."""
         return Identification(self.known.name, "", self.mapping, self.known.source)
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim that names a quantity, in the context of the claim.
 
-    ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If words of
-    the context are not used, it does not say everything, and the claim is neither true nor false.
+    ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If symrot
+    does not use some words of the context, the claim is called neither true nor false, and a note lists these words.
     """
     verdict = _with_all_words(claim, named, verdict)
     sequence = claim.context.sequence
@@ -146,7 +147,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
-    """Return the verdict "recognised" in place of "true" if phi and psi have the less usual order in a sequence.
+    """Return the verdict, changed from "true" to "recognised" if phi and psi have the less usual order in a sequence.
 
     In ZYX psi is the first angle, and phi the third (yaw, pitch, roll); in every other sequence phi is the first.
     """
@@ -168,7 +169,7 @@ def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> V
 
 
 def _with_sides(verdict: Verdict) -> Verdict:
-    """Return the verdict "recognised" in place of "true" if a, b and c are not the sides along x, y and z."""
+    """Return the verdict, changed from "true" to "recognised" if a, b and c are not the sides along x, y and z."""
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     if readings:
         return replace(verdict, recognised_as=tuple(readings))
@@ -187,7 +188,7 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict "recognised" in place of "true" if letters such as I_1 stand for another axis than they say.
+    """Return the verdict, changed from "true" to "recognised" if a letter such as I_1 stands for another axis.
 
     The words about a letter, or about the moments of the body, may say for which axis it stands.
     """
@@ -244,7 +245,7 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the derived formulas to which a formula is equal in the other frame, or without the context."""
+    """Return the derived formulas that match a claim in the other frame or, if there are none, without its context."""
     context = claim.context
     if context.body and (context.place or context.body.axes):
         elsewhere = replace(context, body=replace(context.body, place="", axes=""))
@@ -273,7 +274,7 @@ def _name(named: NamedFormula) -> str:
 
 
 def _stated_by_name(named: NamedFormula) -> str:
-    """Return the words that the name of a quantity says about a formula for it."""
+    """Return the words in names of formulas that the name of a quantity implies: "first component" for an index 1."""
     words = list(words_of(named) or ())
     if re.fullmatch(r"[RACQ](_?\w+)?", named.name):
         words.append("rotation matrix")
@@ -300,7 +301,7 @@ def _decided(claim: Claim, left: Node, right: Node) -> Decision:
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" on a formula against its repair, or None."""
+    """Return the decision "false" if the formula of a claim differs from its repair, otherwise None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -312,7 +313,7 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict by the derived formulas that the context means; None if it means none for sure."""
+    """Return the verdict that the derived formulas meant by the context imply; None if they do not decide the claim."""
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -339,7 +340,7 @@ def _by_meant_formulas(
 
 
 def _is_transposed(target: Any, value: Any) -> bool:
-    """Return whether a square matrix is the transpose of another one."""
+    """Return whether the matrix ``value`` is square and provably the transpose of ``target``."""
     if not is_matrix(value) or value.rows != value.cols:
         return False
     decision = _equal(target.T, value)
@@ -392,7 +393,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault of a formula against the derived one, and its repairs; they change the formula alone."""
+    """Return the fault by which a claim's formula differs from a derived one, and repairs of the claim's formula."""
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
@@ -415,7 +416,7 @@ def _neatness(repair: Repair) -> tuple[bool, int]:
 
 
 def _equal(target: Any, value: Any) -> Decision | None:
-    """Return the decision on the equation of two values, the claim on the left; None if there is none."""
+    """Return the decision on ``value == target``; None if the equation cannot be decided."""
     try:
         return decide_equation(Equation(value, target))
     except (InputError, TooLarge):
@@ -448,7 +449,7 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the rates of angles that a claim lacks, written as the claim writes the other rates."""
+    """Return the angle rates that a claim lacks, each with its derivative; empty if the claim has no derivative."""
     if not any(atom.is_Derivative for atom in own):
         return {}
     functions = {symbol: Function(symbol.name[1:], real=True)(time) for symbol in ANGLES if symbol.name.startswith("d")}
@@ -477,9 +478,9 @@ def _with_letters(context: Context, target: Any) -> Any:
 def _assignments(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways in which each atom of a claim can be a symbol of a derived formula, by the letters that books use.
+    """Yield mappings from symbols of a derived formula to the atoms of a claim, by the letters that books use.
 
-    If the formula ``is_specific``, for one body or sequence, the claim may lack some of its symbols.
+    If the formula ``is_specific`` (for one body or one sequence), the claim may lack some of its symbols.
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
@@ -523,7 +524,7 @@ def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
 
 
 def _distinct(choices: Sequence[Sequence[Expr]]) -> Iterator[tuple[Expr, ...]]:
-    """Yield one member of each choice, all of them different."""
+    """Yield tuples of one member of each choice, with no member twice."""
     if not choices:
         yield ()
         return

@@ -1,6 +1,6 @@
 """The quantities that words such as "moment of inertia about the centre" name, with their synonyms.
 
-A quantity belongs to derived formulas, by words in their names, and to symbols of derived formulas.
+Words in the names of derived formulas, and patterns of symbols, tell which formulas and symbols are for a quantity.
 """
 
 import re
@@ -25,7 +25,7 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases of which one is in the name of each derived formula for it.
+        Phrases; the name of each derived formula for the quantity contains one of them.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
@@ -278,7 +278,7 @@ _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|al
 
 
 def unused_words(words: str) -> str:
-    """Return the words of a text that say something, without articles and the like; often there are none.
+    """Return the words of a text that carry meaning, without articles and the like; often the result is empty.
 
     Examples
     --------

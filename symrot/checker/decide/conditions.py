@@ -34,7 +34,7 @@ MOST_TERMS, LARGEST_DEGREE = 400, 24
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the conditions that textbooks state and each of which makes all residuals (left - right) vanish.
+    """Return conditions, of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def requirements(
     numerators : sequence of PolyElement
         The reduced numerators of the residuals that are not zero.
     sides : sequence of (Expr, Expr)
-        Left and right side of the entries that they belong to.
+        Left and right side of the entry that each residual belongs to.
     entries : int
         The number of entries of the claim.
     """
@@ -115,7 +115,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
     """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` that a factor states; None for a sum of moments.
 
-    A sum of moments of inertia is positive, so that it is no condition.
+    A sum of moments of inertia is positive: it cannot be zero.
     """
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
@@ -140,7 +140,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia are zero, if the claim is true under it; otherwise None."""
+    """Return the condition that all products of inertia are zero if it makes the claim true; else an empty list."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -162,8 +162,8 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
     Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
     ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
-    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if that is so wherever the
-    claim is defined.
+    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if ``-a/b >= 0`` holds
+    wherever the claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

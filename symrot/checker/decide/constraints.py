@@ -98,7 +98,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
     even = set()
     loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
     for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
-        square = ring.ratio(root.power_expression)  # not reduced by hypotheses, which would say less
+        square = ring.ratio(root.power_expression)  # not reduced by the hypotheses, since the result would say less
         relation = ring.ring.gens[place] ** root.index * ring.ratios.denominator(square) - square.numerator
         relation = relation.set_ring(target)
         if occurring([relation]) <= free | {place} and root.expression is not I and root not in loose:

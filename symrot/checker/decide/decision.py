@@ -1,7 +1,7 @@
 """The decision on a claim: the stages of :mod:`symrot.exact.decision`, and stages of its own.
 
-A claim brings hypotheses, and its text divides and takes roots where SymPy may have cancelled both. Stages of its own
-use the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
+A claim may have hypotheses, and its text may have divisors and roots that SymPy has cancelled. Further stages use the
+hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
 (:mod:`symrot.checker.decide.conditions`).
 """
 
@@ -80,7 +80,7 @@ class Equation:
     radicands : tuple of Expr
         Formulas of which the text takes even roots.
     bases : tuple of Expr
-        Bases of powers with exponents that are no numbers, which are read for positive bases.
+        Bases of powers whose exponents are not numbers; such powers are read for positive bases.
     """
 
     left: Any
@@ -93,7 +93,7 @@ class Equation:
 
 
 def is_large(equation: Equation) -> bool:
-    """Return whether a side of an equation is too large to be expanded, so that nothing near it can be found."""
+    """Return whether a side of an equation is too large to be expanded, so that no repair can be found."""
     return degree_of([*flatten(equation.left)[0], *flatten(equation.right)[0]]) > LARGEST_DEGREE
 
 
@@ -103,8 +103,8 @@ def decide_equation(equation: Equation) -> Decision:
     Raises
     ------
     InputError
-        If the shapes differ, a side is no finite exact formula, it divides by a formula that is zero everywhere, the
-        hypotheses contradict each other, or a formula of more than ``LARGEST_DEGREE`` is not decided without expansion.
+        If the shapes differ, a side is not a finite exact formula or divides by a formula that is zero everywhere, the
+        hypotheses contradict each other, or a degree above ``LARGEST_DEGREE`` rules out the expansion that is needed.
     """
     try:
         with one_decision():
@@ -243,7 +243,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of a proof in alphabetical order, without those that the hypotheses grant."""
+        """Return the conditions of a proof in alphabetical order, without conditions that are hypotheses."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -294,7 +294,7 @@ def domain_of_text(case: _ClaimCase) -> None:
 
 
 def nearby_witness(case: _ClaimCase) -> None:
-    """Look for a counterexample: among rational points, then among a few points that obey the hypotheses."""
+    """Store a counterexample in ``case``, from rational points or from a few points that obey the hypotheses."""
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
     closed_form = hypotheses.checked(closed_form_witness)
@@ -303,9 +303,9 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that is true for one sign of a root, or on one branch of an inverse function such as asin.
+    """Return "true" for a claim that needs one sign of a root, or one branch of a function such as asin, and has it.
 
-    It is true if the domain of the claim allows no other sign or branch.
+    The domain of the claim must allow no other sign or branch. Return None for any other claim.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -318,7 +318,7 @@ def branch(case: _ClaimCase) -> Decision | None:
 
 
 def entail(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that follows from its hypotheses at all real points; refuse hypotheses that hold nowhere."""
+    """Return the decision on a claim that follows from its hypotheses, or None; refuse hypotheses that hold nowhere."""
     if not case.lacks_evidence:
         return None
     if case.hypotheses.entails(case.numerators):
@@ -328,7 +328,7 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Look for a counterexample among all points that obey the hypotheses."""
+    """Store a counterexample in ``case``, from all points that can be drawn and obey the hypotheses."""
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
@@ -336,7 +336,7 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Decide a claim that is true under a condition that authors often leave out, such as a unit norm."""
+    """Return "conditional" for a claim that is true under a condition that authors often omit, or None."""
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
@@ -485,9 +485,9 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must be nonzero, by text, without those that never vanish and powers of others.
+    """Return formulas that must be nonzero, by text, without formulas that never vanish or are powers of others.
 
-    ``sin(a)**2 + cos(a)**2`` never vanishes, and ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` only where cos(b) does.
+    ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -503,7 +503,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the formula with the shorter text; a large one is not printed to find out."""
+    """Return the formula with the shorter text, or one that has far fewer parts than the other."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few

@@ -41,7 +41,7 @@ CANDIDATES = 8
 """The number of points where the sides differ; the one with the shortest numbers becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
-"""Values for symbols on which no hypothesis bears."""
+"""Values for symbols that occur in no hypothesis."""
 
 
 class Hypotheses:
@@ -66,7 +66,7 @@ class Hypotheses:
 
     @cached_property
     def present(self) -> bool:
-        """Whether there are any hypotheses, or symbols with a sign."""
+        """Whether there are any hypotheses, or symbols that are assumed to have a sign or to be integers."""
         signs = self.constraints
         return bool(self.ring.hypotheses or signs.positive or signs.negative or signs.nonnegative or signs.whole)
 
@@ -143,7 +143,7 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether the theorem on the polynomial core shows that points where no divisor vanishes are dense."""
+        """Return whether :func:`is_dense` shows that points at which all ``needs`` are met exist near every point."""
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
@@ -209,7 +209,7 @@ class Hypotheses:
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
-        """Return whether formulas may vanish together under the hypotheses: False if that is provably impossible."""
+        """Return False if formulas provably cannot vanish together under the hypotheses, otherwise True."""
         if not self.present or not zeros:
             return True
         target = self.constraints.ring
@@ -300,7 +300,7 @@ class Hypotheses:
     ) -> Counterexample | None:
         """Return a point at which the sides provably differ: their values lie in disjoint intervals of 50 digits.
 
-        Else None.
+        Return None if no such point is known.
         """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
         involved = occurring([*self.constraints.zeros, *self.constraints.products])

@@ -1,10 +1,10 @@
 """Proofs that constraints hold at no real point, and that a formula vanishes wherever they hold.
 
-Polynomials that vanish are split into factors (a case for each), into the squares whose sum they are, into a Groebner
-basis. A case is impossible if 1 = 0 follows, or if a polynomial keeps its sign: by its form, by the ranges of its
-unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding ``z f = 1`` makes all cases
-impossible (Rabinowitsch). This also proves formulas that vanish for real numbers or positive symbols only, or of which
-only a power is a combination of the constraints.
+A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
+basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
+form, by the ranges of its unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding
+``z f = 1`` makes all cases impossible (Rabinowitsch). This also proves that f vanishes where it does so for real
+numbers or positive symbols only, or where only a power of f is a combination of the constraints.
 """
 
 from collections.abc import Sequence
@@ -134,7 +134,8 @@ class _Prover:
     def parts(self, poly: PolyElement) -> list[PolyElement]:
         """Return polynomials that vanish wherever ``poly`` does.
 
-        They are its terms if all of them have one sign, otherwise ``poly`` itself.
+        They are its terms, without exponents, if all terms have one sign, the forms l of :meth:`squares` if it is a sum
+        of squares, otherwise ``poly`` itself.
         """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
@@ -199,7 +200,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Write a quadratic polynomial as a sum of squares, by completing the square in one unknown after the other."""
+        """Return a quadratic polynomial as pairs (d, l) with the sum of d*l^2, or an empty list; complete squares."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]

@@ -1,7 +1,8 @@
 """Equations with powers too large to be expanded, such as ``(a - x)**6000 == (x - a)**6000``.
 
 All powers of one base u become ``Z u^m`` with a letter Z for the smallest large power, which is not expanded. An
-equation that holds for all values of the letters holds for the powers too. It is refuted at a point with small numbers.
+equation that holds for all values of the letters holds for the powers too. A false equation is refuted at a point with
+small numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,7 +39,7 @@ LONGEST_WHOLE_NUMBER = 40
 """The most digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Digits with which other numbers are written: as few as show that the sides differ."""
+"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------
@@ -87,8 +88,8 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
     """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
 
-    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2. With ``bases``, the
-    coefficients are multiples of these.
+    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2. The coefficient of an atom
+    in ``bases`` is counted in multiples of the value there.
     """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:

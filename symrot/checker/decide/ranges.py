@@ -48,12 +48,12 @@ def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
 
 
 def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
-    """Return whether conditions add nothing to ``known`` ones."""
+    """Return whether the conditions ``signs`` follow from the conditions ``known``."""
     return set(_texts(_Conditions.of([*known, *signs]))) == set(_texts(_Conditions.of(known)))
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts: its requirements, then what else its formulas need.
+    """Return the conditions of a decision as texts: its requirements, then the other conditions of its formulas.
 
     A condition that follows from the only requirement is left out.
     """
@@ -191,7 +191,7 @@ def _is_definite(factor: Expr) -> bool:
 
 @dataclass
 class _Range:
-    """The bounds of one quantity, each a number or None, and whether the quantity may be equal to it."""
+    """The lower and upper bound of a quantity, each a number or None, and whether the quantity may reach the bound."""
 
     low: Expr | None = None
     high: Expr | None = None
@@ -199,7 +199,7 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add the bound ``root`` from below (``above``: the quantity is above it) or from above."""
+        """Add ``root`` as a lower bound if the quantity is ``above`` it, otherwise as an upper bound."""
         name = "low" if above else "high"
         known = getattr(self, name)
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
@@ -210,7 +210,7 @@ class _Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of the quantity minus ``root``, 0 if unknown, and whether it may be zero."""
+        """Return the sign of the quantity minus ``root`` (0 if unknown), and whether this difference may be zero."""
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
             if distance is not None and distance.is_nonnegative:
@@ -287,7 +287,7 @@ class _Conditions:
             self.nonzero[_bound(factor).formula] = None
 
     def _settle(self) -> None:
-        """Turn products into bounds as long as the sign of all factors but one is known."""
+        """Turn each product of which all factors but one have known signs into a bound, and repeat."""
         changed = True
         while changed:
             changed = False
@@ -339,7 +339,7 @@ class _Conditions:
         return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
 
     def _new_range(self, quantity: Expr) -> _Range:
-        """Return the range that a quantity has anyway: -1 to 1 for a sine or cosine, nonnegative for a square."""
+        """Return the range that follows from the form of a quantity: -1 to 1 for a sine, nonnegative for a square."""
         if isinstance(quantity, sin | cos):
             return _Range(Integer(-1), Integer(1))
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
@@ -355,7 +355,7 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges exclude the zeros of a formula; an end of a range at a zero is taken away."""
+        """Return whether the ranges exclude the zeros of a formula; a bound at a zero is taken out of its range."""
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
@@ -372,7 +372,7 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether ``cos(u) > -1`` or ``cos(u) < 1`` follows because the cosine or sine of u/2 is not zero."""
+        """Return whether the range of cos(u) follows from -1 <= cos(u) <= 1 and nonzero sine or cosine of u/2."""
         if not isinstance(quantity, cos):
             return False
         half = quantity.args[0] / 2
@@ -383,7 +383,7 @@ class _Conditions:
         return below and above
 
     def _angle_excludes(self, function: Expr) -> bool:
-        """Return whether the range of an angle lies between two zeros next to each other of its sine or cosine."""
+        """Return whether the range of an angle lies between two neighbouring zeros of its sine or cosine."""
         angle = _bound(function.args[0])
         own = self.ranges.get(angle.quantity)
         if own is None or own.low is None or own.high is None or angle.slope < 0 or angle.root != 0:
@@ -435,7 +435,7 @@ def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str
 
 
 def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
-    """Return symbols that are known to be positive or nonnegative, each with a symbol that SymPy knows to be so."""
+    """Return symbols that are known to be positive or nonnegative, with substitutes that SymPy assumes to be so."""
     values: dict[Expr, Expr] = {}
     for quantity, own in ranges.items():
         if quantity.is_Symbol and own.low is not None and own.low.is_nonnegative:

@@ -157,7 +157,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to the unknowns that no equation restricts, then to those expressed by other unknowns."""
+        """Return the point after giving values to free unknowns, then to unknowns expressed by other unknowns."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -192,7 +192,7 @@ class _Drawing:
     # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
-        """Replace an equation ``a*b = 0`` by ``a = 0``, for one of the factors of its left side."""
+        """Replace an equation ``a*b = 0`` by ``a = 0`` with a factor a; return whether there is such an equation."""
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
                 return False
@@ -205,11 +205,11 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown whose coefficient is a number."""
+        """Solve an equation for an unknown with a number as its coefficient; return whether there is one."""
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown for this unknown, which divides by its coefficient."""
+        """Solve an equation for an unknown in which it is linear, with a division; return whether there is one."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -230,7 +230,7 @@ class _Drawing:
         return True
 
     def univariate(self) -> bool:
-        """Solve an equation with a single unknown: the unknown gets one of its roots."""
+        """Give the only unknown of an equation the value of a root; return whether there is such an equation."""
         for poly in self.zeros:
             places = occurring([poly])
             if len(places) == 1:
@@ -240,7 +240,7 @@ class _Drawing:
         return False
 
     def quadric(self) -> bool:
-        """Solve an equation of degree 2: its unknowns get the coordinates of a rational point."""
+        """Give the unknowns of an equation of degree 2 the coordinates of a rational point; return whether one fits."""
         if self.field != QQ:
             return False
         fitting = [p for p in self.zeros if max(map(sum, p)) == 2 and self.known.get(("barren", p), 0) < MOST_BARREN]
@@ -259,7 +259,7 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Give a simple value to an unknown of one of the equations."""
+        """Give a simple value to an unknown of one of the equations; return True."""
         poly = self.source.choice(self.zeros)
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})
@@ -284,7 +284,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count the cost of factoring a polynomial of this degree against the budget; over the rationals it is free."""
+        """Count the cost of factoring a polynomial (none over the rationals); raise _DeadEnd beyond the budget."""
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm

@@ -38,9 +38,9 @@ class CalculusPart(NamesPart):
         return node if power is None else Node("power", None, (node, power))
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Read the argument of a sine without brackets, such as ``2\theta``.
+        r"""Read an argument without brackets, such as ``2\theta``; return its tree and an exponent of the whole sine.
 
-        Return it, and the power of the whole sine if a power after the argument means that: ``\sin\theta^2``.
+        The exponent is None unless a power after the argument is read as one of the sine: ``\sin\theta^2``.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
@@ -58,7 +58,7 @@ class CalculusPart(NamesPart):
         return (negated(argument) if negative else argument), power
 
     def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
-        """Read the factors, after the first, of the argument of a sine without brackets."""
+        """Read and return the factors after the first one in an argument without brackets."""
         factors = [self.factor()] if required else []
         first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
@@ -111,7 +111,7 @@ class CalculusPart(NamesPart):
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
     def leibniz(self) -> Node | None:
-        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``; None for any other text."""
+        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``, and return it; otherwise None."""
         texts = [item.text for item in self.items[self.index : self.index + 8]]
         slash = texts.index("/") if "/" in texts else 0
         below = self.index + slash + 1
@@ -128,7 +128,7 @@ class CalculusPart(NamesPart):
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
-        """Read a derivative written as a fraction: ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``."""
+        r"""Read a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
         order, operand = self.inside(fraction.above, self.differentiated)
         if "d" in self.names:
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
@@ -145,16 +145,16 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        """Read the numerator ``d^n X`` of a derivative.
+        """Read the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
 
-        Return the order n and X, or None for X if it follows the fraction.
+        X is None if it follows the fraction.
         """
         self.next()
         order = self.order()
         return order, None if self.peek().kind == "end" else self.expression()
 
     def variables(self) -> list[Node]:
-        """Read the denominator of a derivative, such as ``dx^2 dy``; return the variables."""
+        """Read the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
         variables: list[Node] = []
         while self.peek().kind != "end":
             if not is_d(self.next()):
@@ -183,7 +183,7 @@ class CalculusPart(NamesPart):
         return derivative
 
     def over_body(self) -> Node:
-        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe."""
+        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe; return its tree."""
         self.script("_")
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()

@@ -73,7 +73,7 @@ class Names:
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column vector, of which bars mean the length (of a matrix, the determinant)."""
+        """Return whether a matrix is a column vector: then bars mean its length, otherwise a determinant."""
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
@@ -161,7 +161,7 @@ class Cursor(cursor.Cursor):
         Raises
         ------
         InputError
-            If the text may have only one reading. It asks for what is ``expected`` at ``place``, by default the item.
+            If the text must have a single reading; the message asks for ``expected`` at ``place``, by default ``item``.
         """
         if self.flips is None:
             raise self.fail(expected, place or item)
@@ -189,7 +189,7 @@ def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
 
 
 def _frames(pieces: Sequence[Token]) -> set[str]:
-    r"""Return the marks of frames before names, as A and B in ``{}^A x = R\,{}^B x``."""
+    r"""Return the letters that mark the frames of names, such as A and B in ``{}^A x = R\,{}^B x``."""
     texts = [piece.text for piece in pieces]
     frames = set()
     for place in range(len(texts) - 3):

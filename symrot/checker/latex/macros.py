@@ -145,7 +145,7 @@ class _Expansion:
         return self.place < len(self.pieces) and self.pieces[self.place].text in texts
 
     def order(self) -> Sequence[Token]:
-        """Read the order of a derivative in square brackets, or nothing."""
+        """Read the order of a derivative in square brackets; return its tokens, or no tokens if there is no order."""
         if not self.at("["):
             return []
         texts = [piece.text for piece in self.pieces[self.place :]]
@@ -155,7 +155,7 @@ class _Expansion:
         return inside
 
     def argument(self, command: Token) -> Sequence[Token]:
-        """Read the argument of a command: a group in braces, whose braces are left out, or a single token."""
+        """Read the argument of a command and return its tokens: a group without its braces, or a single token."""
         while self.place < len(self.pieces) and self.pieces[self.place].kind == "space":
             self.place += 1
         first = self.place

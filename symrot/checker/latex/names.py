@@ -45,7 +45,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\"), item)
 
     def cosine_or_sine(self, item: tree.Node) -> Node:
-        r"""Read a short form of a cosine or sine, such as ``c_\theta``, from after its letter."""
+        r"""Read what follows the letter in a short form such as ``c_\theta``; return the cosine or sine."""
         function, angles = self.short[item.start]
         power = None if angles else self.script("^")
         if angles:
@@ -97,7 +97,7 @@ class NamesPart(SumsPart):
         return self.vector(known) if known in self.crossed else Node("name", known)
 
     def skew_of_vector(self) -> Node | None:
-        r"""Read the bracket of ``S(\omega)``, the skew matrix of a vector; None for any other bracket."""
+        r"""Read the bracket of ``S(\omega)`` and return the skew matrix; return None for any other bracket."""
         inner = self.peek(1)
         is_vector = inner.text in ("\\omega", "\\Omega", *VECTOR_MARKS) and self.peek(2).text == ")"
         if not self.at("(") or not is_vector or "S" in self.names or self.flips is None:
@@ -110,7 +110,7 @@ class NamesPart(SumsPart):
         return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
-        r"""Read a change of a quantity, ``\Delta t``, as one name Delta_t."""
+        r"""Read a change of a quantity, ``\Delta t``, and return the node of the one name Delta_t."""
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
         if self.flips is None:
@@ -166,7 +166,7 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return the declared name with a subscript, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
+        """Return a name with its subscript as it is declared, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
@@ -198,7 +198,7 @@ class NamesPart(SumsPart):
         self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Read a defined vector or matrix with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``."""
+        r"""Read a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return its node, as a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
             raise self.fail("eye(n) among the definitions for a unit matrix", inside)
@@ -216,7 +216,7 @@ class NamesPart(SumsPart):
         return node
 
     def total(self, sign: tree.Node) -> Node:
-        r"""Read ``\sum M_x``, the total of all torques or forces, as the name M_x."""
+        r"""Read ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
             raise self.fail("the terms of a sum with +", sign)
@@ -224,7 +224,7 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Return the name of a vector or tensor that no definition gives components."""
+        """Record a name as a vector or tensor that still needs components, and return its node, marked with MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -234,9 +234,9 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        """Read a name whose mark is part of the name: ``\bar I`` is another symbol than ``I``.
+        r"""Read a name whose mark is part of the name, and return its node: ``\bar I`` is another symbol than ``I``.
 
-        A tilde over a vector means its skew matrix, and a bar over a vector is part of its name.
+        A tilde over a vector means its skew matrix; a bar over a vector is part of its name.
         """
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)
@@ -248,7 +248,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Read the formula under a mark, with the subscript and primes after the mark: ``\dot{\mathbf{H}}_G``."""
+        r"""Return what ``read`` reads under a mark, with the subscript and primes after it: ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)
@@ -257,7 +257,7 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Read a letter, a number or a command, or a symbol with a mark such as a hat."""
+        """Read a letter, a number or a command, or a symbol with a mark such as a hat; return its tree."""
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
             return self.base(item)
@@ -266,7 +266,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\") + ending, item)
 
     def spelled(self, font: tree.Font) -> Node:
-        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``: a built-in function, or a name of several letters."""
+        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``; return a call, or a name of several letters."""
         node = self.under(font, lambda: self.word(font))
         if node.kind == "call":
             return self.called(str(node.value))
@@ -274,7 +274,7 @@ class NamesPart(SumsPart):
         return node
 
     def word(self, font: tree.Font) -> Node:
-        """Read letters and digits, with a subscript and primes; a built-in function becomes a call."""
+        """Read letters and digits, with a subscript and primes; return a name, or the call of a built-in function."""
         name = ""
         while self.peek().kind in ("letter", "number"):
             name += self.next().text
@@ -290,7 +290,7 @@ class NamesPart(SumsPart):
         return self.called(OPERATORS[item.text])
 
     def called(self, name: str) -> Node:
-        """Read the argument of a function: its arguments in brackets, or a single factor without brackets."""
+        """Read the arguments of a function in brackets, or one factor without brackets; return the call."""
         opening = self.peek()
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))

@@ -126,10 +126,10 @@ def _read(
     source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
     flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
-    """Return what ``read`` reads from a LaTeX text, and the reader after it.
+    """Return the lines that ``read`` reads from a LaTeX text, and the interpreter that has read them.
 
-    A name without a mark may turn out to be a vector after other places with it have been read; then it is read again.
-    Without ``flips``, a text that has two readings is refused.
+    If a name without a mark turns out to be a vector only late in the text, the text is read again. Without ``flips``,
+    a text that has two readings is refused.
     """
     crossed: frozenset[str] = frozenset()
     while True:
@@ -202,19 +202,19 @@ class _Interpreter(CalculusPart):
     }
 
     def formula(self) -> list[Line]:
-        """Read one formula without an equals sign."""
+        """Read one formula without an equals sign; return it as the only side of the only line."""
         formula = self.expression()
         if self.peek().kind != "end":
             raise self.fail("one formula without '='" if self.at("=") else "an operator or the end")
         return [([], [formula])]
 
     def equation(self) -> list[Line]:
-        """Read one equation."""
+        """Read one equation; return it as the only line."""
         (line,) = self.chains()
         return [line]
 
     def equations(self) -> list[Line]:
-        """Read equations; in an environment of several lines, a line with ``=`` first continues the line before it."""
+        """Read equations and return them as lines; a line that starts with ``=`` continues the line before it."""
         self.items = [item for item in self.items if item.text != "&"]
         while isinstance(self.peek(), tree.Row) and self.peek(1).kind == "end":  # \boxed{..}
             self.enter(self.peek())
@@ -232,7 +232,7 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Read chains ``a = b = c`` up to the end; ``line`` is the beginning of the first, on the line before."""
+        """Read and return chains ``a = b = c`` up to the end; ``line`` is the part of the first chain read so far."""
         lines: list[Line] = []
         while True:
             if line is None:
@@ -271,9 +271,9 @@ class _Interpreter(CalculusPart):
         return True
 
     def head(self) -> Node | None:
-        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix, as the name R.
+        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix; return the name R.
 
-        Brackets around it, as in ``[M_3(\theta)] =``, belong to the name. Return None if there is no such head: then
+        Brackets around the head, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such head: then
         ``R(\phi)`` is a product.
         """
         opened = 1 if self.at("[") else 0
@@ -304,10 +304,10 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield the items of each line of an environment, without the spaces, commas and full stops at its end.
+    """Yield the items of each line of an environment, and whether the line continues the line before it.
 
-    Each comes with whether it continues the line before it: it begins with a plus or minus sign, after an empty cell or
-    without a sign of a relation.
+    It does if it starts with a plus or minus sign and its first cell is empty or it has no relation sign. Spaces, and
+    commas and full stops at the end of a line, are left out.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]

@@ -1,4 +1,4 @@
-r"""Short forms of cosines and sines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
+r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
 
 They are read as functions only if the text has both a cosine and a sine in this form, and no c or s by itself.
 """
@@ -24,7 +24,7 @@ FEWEST_NUMBERED = 2
 
 
 class Shorthand(NamedTuple):
-    r"""A short form: its function, and the angles whose sum is the argument; no angles if they follow (``c\theta``)."""
+    r"""A short form: its function, and the angles whose sum is the argument; empty if an angle follows it."""
 
     function: str
     angles: tuple[str, ...]
@@ -54,7 +54,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms with letters such as c and s, by position; none if c or s is a name by itself."""
+    """Return the short forms with letters such as c and s, by position; empty if c or s is a name by itself."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -77,7 +77,7 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the short forms with numbers, ``c_1`` and ``s_{12}``, of which a text has several of both kinds."""
+    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; empty if the text has too few of them."""
     numbers = {name: {number for function, number in numbered.values() if function == name} for name in ("cos", "sin")}
     if min(map(len, numbers.values())) < FEWEST_NUMBERED:
         return {}
@@ -118,8 +118,7 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
     r"""Return the only Greek letter, or q, that has some of the digits as subscripts, as in ``\theta_1``.
 
-    A text without any Greek letter has the angles theta_1, theta_2, ..; a text in which two letters have the
-    subscripts has none.
+    The letter is theta for a text without Greek letters, and an empty text if two letters have such subscripts.
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):

@@ -61,7 +61,7 @@ class SumsPart(Cursor):
     """Kind or text of an item -> the method of a further part that reads it."""
 
     def expression(self) -> Node:
-        """Read a sum."""
+        """Read a sum and return its tree."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING // 2:
             raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels")
@@ -129,7 +129,7 @@ class SumsPart(Cursor):
         return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
     def run(self) -> Node:
-        """Read the factors of a product without product signs, with slashes, as in ``a/b`` or ``1/2 m``."""
+        """Read factors with slashes but without product signs, as in ``a/b`` or ``1/2 m``; return their product."""
         factors = [self.factor()]
         divided: tree.Node | None = None
         while True:
@@ -151,9 +151,9 @@ class SumsPart(Cursor):
                 factors.append(self.factor())
 
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
-        """Read the formula after a slash: a factor, or the product ``2m`` of ``p^2/2m``.
+        """Read the formula after a slash, a factor or the product ``2m`` of ``p^2/2m``, and return its tree.
 
-        Return it, and whether the factors after it are certainly no part of it, as in ``1/2 m``.
+        Also return whether the factors after the formula are certainly no part of it, as in ``1/2 m``.
         """
         first = self.peek()
         below = [self.factor()]
@@ -183,7 +183,7 @@ class SumsPart(Cursor):
         return is_d(self.peek()) and is_letter(self.peek(1))
 
     def factor(self) -> Node:
-        """Read one factor with its exponents."""
+        """Read one factor with its exponents and return its tree."""
         if self.flips is not None and (derivative := self.leibniz()) is not None:
             return derivative
         item = self.next()
@@ -230,7 +230,7 @@ class SumsPart(Cursor):
         return self.vector(f"{base}_star") if marked else replace(node, value=f"{base}_star")
 
     def argument(self, node: tree.Node) -> Node:
-        """Return the argument of a command: a group in braces, or one token."""
+        """Return the tree of a command's argument, which is a group in braces or one token."""
         if isinstance(node, tree.Row):
             return self.inside(node, self.expression)
         if node.kind == "number":
@@ -246,7 +246,7 @@ class SumsPart(Cursor):
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Read one factor without its exponents."""
+        """Read one factor without its exponents and return its tree."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":
@@ -258,7 +258,7 @@ class SumsPart(Cursor):
         return read(self, item)
 
     def matrix_name(self) -> Node | None:
-        r"""Read capital letters in square brackets, ``[FB]``, as the name of one matrix; None for other brackets."""
+        r"""Read capital letters in square brackets, ``[FB]``; return one matrix name, or None for other brackets."""
         texts = [item.text for item in self.items[self.index :]]
         end = texts.index("]") if "]" in texts else 0
         name, after = "".join(texts[:end]), self.peek(end + 1)
@@ -295,7 +295,7 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def framed(self, mark: tree.Script) -> Node:
-        r"""Read a name after its frame, ``{}^A R_B``; if there are several frames, they are parts of the names."""
+        r"""Read a name after its frame, ``{}^A R_B``; return its node, with the frames if there are several."""
         frame = tree.alone(mark.inside)
         while isinstance(frame, tree.Font):
             frame = tree.alone(frame.inside)

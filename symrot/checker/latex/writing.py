@@ -37,9 +37,8 @@ SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 class LatexNotation:
     """LaTeX as a notation for the formulas of a text, with the names of its functions of time and of its vectors.
 
-    The value of a vector is True if it has a hat.
-
-    A formula without LaTeX that the reader would read as the same formula is written as SymPy's text.
+    The value of a name in ``vectors`` is True if the vector has a hat. A formula is written as SymPy's text if the
+    LaTeX reader would not read the same formula from its LaTeX.
     """
 
     functions: Collection[str] = ()
@@ -94,7 +93,7 @@ def latex_of(
 
 
 def latex_of_text(source: str, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS) -> str:
-    """Return the LaTeX of an equation in SymPy's text, or the text itself if it has no LaTeX.
+    """Return the LaTeX of an equation in SymPy's text, or the text itself if :func:`latex_of` returns None.
 
     Words after the equation (``with ..``) stay unchanged.
     """
@@ -115,7 +114,7 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether a derivative is one with respect to time, of an order that dots can show."""
+    """Return whether a derivative is taken with respect to time only, with an order that dots can show."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
@@ -168,7 +167,7 @@ class Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return factors side by side; a divisor makes a fraction with the factor before it."""
+        """Return the LaTeX of factors side by side; a divisor makes a fraction with the factor before it."""
         pieces: list[str] = []
         last = None
         for factor in node.args:
@@ -242,7 +241,7 @@ class Writer:
         return command + self.argument(node)
 
     def integral(self, node: Node) -> str:
-        """Return an integral, whose first range is the innermost one."""
+        """Return the LaTeX of an integral; the first range in the node is the innermost."""
         integrand, *ranges = node.args
         signs = [
             f"\\int_{{{self.formula(place.args[1])}}}^{{{self.formula(place.args[2])}}}" for place in reversed(ranges)

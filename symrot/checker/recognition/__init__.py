@@ -1,1 +1,1 @@
-"""Recognition of formulas: find the formula, among all that symrot derives, to which a given one is equal."""
+"""Recognition of formulas: which of the formulas that symrot derives is equal to a given formula."""

@@ -2,8 +2,8 @@
 
 Formulas are evaluated in the field of 2^61 - 1 elements. Its arithmetic is exact: equal functions have equal values,
 and different ones agree with a probability of 1e-18. An angle becomes a rational point of the circle. The signature of
-a symbol is the value of the formula with that symbol raised above all others. The sorted signatures are the
-fingerprint; symbols of two formulas with equal signatures are paired.
+a symbol is the value of the formula at a point where that symbol has one value and all others have another. The sorted
+signatures are the fingerprint; symbols of two formulas with equal signatures are paired.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ __all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "values_at"]
 PRIME = 2**61 - 1
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
-"""(value of the raised symbol, value of the others), tried in turn until the formula is defined."""
+"""(value of one symbol, value of all others), tried in turn until the formula is defined."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
 LARGEST_MULTIPLE = 400
@@ -143,15 +143,15 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 class Fingerprint:
     """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
 
-    A signature is the values of the formula's entries at a point where that atom alone has a larger value.
+    A signature holds the values of the formula's entries at a point where that atom has one value, all others another.
     """
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
-    idle: tuple[Expr, ...] = ()  # atoms that occur in the formula, which does not depend on them
+    idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures of the entries in another order, divided by a constant factor common to all entries."""
+        """Return the signatures with their entries in another order, scaled so that multiples have equal rows."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
@@ -187,9 +187,9 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of an atom in a formula without a value at equal values of the others, as x/(A - B).
+    """Return the signature of an atom in a formula such as x/(A - B), without a value where other atoms are equal.
 
-    It is the sum of the values with a second atom raised too, over all second atoms for which there is a value.
+    It is a sum over all second atoms: of the values, where there are any, at points at which this one differs too.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

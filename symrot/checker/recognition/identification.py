@@ -208,7 +208,7 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int]:
-    """Return how many changes and new names it takes to make a known formula equal to a formula."""
+    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one."""
     return bool(match.how) + match.how.count(" and "), len(match.mapping)
 
 
@@ -270,7 +270,7 @@ def _matched(
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         if few and not _keeps_names(pairs):
             continue
-        ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers are those of the factors
+        ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
         if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.is_placed):
             continue
@@ -298,7 +298,7 @@ def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _is_usual(mine: Expr, own: Expr) -> bool:
-    """Return whether books use the letter of a symbol for a quantity with the unit of a symbol of a known formula."""
+    """Return whether books use the letter ``own`` for quantities with the unit of the known symbol ``mine``."""
     name = plain_name(as_text(own))
     pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
     return pattern is None or re.fullmatch(pattern, name) is not None
@@ -341,7 +341,7 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return orders of the symbols ``others`` to pair them with ``atoms``, the most plausible ones first.
+    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first.
 
     An order is plausible if few units contradict each other and many names are equal.
     """
@@ -374,7 +374,7 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant by which two formulas differ, from their values at a point; None if there is none."""
+    """Return the constant factor by which two formulas differ, from their values at a point; None without such one."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

@@ -45,7 +45,7 @@ def vectors() -> Iterator[Named]:
     yield "velocity of a point of a body", RELATIVE, origin + turning
     yield "velocity of a point in a rotating frame", RELATIVE, relative + turning
     on_body = ALPHA.cross(POSITION) + OMEGA.cross(turning)
-    # d/dt of the velocity: its rate in the rotating frame, and omega times it
+    # d/dt of the velocity: its rate in the rotating frame, plus omega x velocity
     in_frame = Matrix(symbols.relative_acceleration) + ALPHA.cross(POSITION) + OMEGA.cross(relative)
     in_frame += OMEGA.cross(relative + turning)
     for place, added in (("a fixed origin", Matrix([0, 0, 0])), ("a moving origin", Matrix(symbols.acceleration))):
@@ -91,7 +91,7 @@ def _turned_after(matrix: Matrix, omega: Matrix) -> Matrix:
 
 
 def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
-    """Yield the rotation matrix by axis and angle in two forms that a unit axis makes equal, and by a quaternion."""
+    """Yield rotation matrices: of axis and angle, in two forms that are equal for a unit axis, and of a quaternion."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     yield "axis and angle (Rodrigues' formula)", powers
     yield "axis and angle (Rodrigues' formula) with a unit axis", _with_unit_axis(powers)
@@ -100,13 +100,13 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
 
 
 def _with_unit_axis(powers: Matrix) -> Matrix:
-    """Return a matrix with the square of the skew matrix of a unit axis as n n^T - 1."""
+    """Return a matrix in which n n^T - 1 replaces the square of the skew matrix of the unit axis n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (powers + excess * eye(3)).applyfunc(expand)
 
 
 def rotations() -> Iterator[Named]:
-    """Yield entries of matrices, angles, quaternions and other parameters from each other."""
+    """Yield formulas for matrix entries, angles, quaternions and other parameters in terms of each other."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     yield "rotation matrix of a unit axis and an angle (Rodrigues' formula)", UNIT, _with_unit_axis(powers)
     yield from _entries()
@@ -136,7 +136,7 @@ def _entries() -> Iterator[Named]:
 
 
 def _angles() -> Iterator[Named]:
-    """Yield the axis and angle of a matrix, and the angle of a quaternion, of Euler angles, of two rotations."""
+    """Yield formulas for the axis and angle of a rotation, from a matrix, quaternion, Euler angles or two rotations."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     total = expand(trace(powers)).subs(symbols.n3**2, 1 - symbols.n1**2 - symbols.n2**2)
     (cosine,) = solve(expand(total) - trace(ENTRIES), cos(ANGLE))
@@ -148,7 +148,7 @@ def _angles() -> Iterator[Named]:
     scalar, *vector = rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)
     yield "scalar component of the quaternion of axis and angle", UNIT, scalar
     yield from _with_words("quaternion of axis and angle", UNIT, Matrix(vector))
-    half = symbols.phi / 2  # the angle is twice that of the scalar part
+    half = symbols.phi / 2  # the scalar part is the cosine of half the angle
     assert rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)[0] == cos(half)
     yield "angle of rotation of a unit quaternion, 2 acos", PARAMETERS, Q[0]
     length = sqrt(Q[1] ** 2 + Q[2] ** 2 + Q[3] ** 2)

@@ -59,7 +59,7 @@ class Known:
 
     @property
     def is_placed(self) -> bool:
-        """Whether the formula is of one axis or entry, so that no axes can be exchanged in it."""
+        """Whether the formula is for one axis or one matrix entry, so that its axes cannot be exchanged."""
         return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property
@@ -327,13 +327,13 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the ending of the name of a known formula that says of which function of the quantity it is, or ''."""
+    """Return the ending of a known formula's name for a function of the quantity, such as ", squared"; or ''."""
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 
 
 def relation_key(key: str, is_relation: bool) -> str:
-    """Return the key of a relation, or the fingerprint itself of any other formula."""
+    """Return the key of a formula in the table: its fingerprint, with a mark if it is a relation."""
     return f"={key}" if is_relation else key
 
 

@@ -98,7 +98,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
-"""Pattern of a name, ``d`` in front of it for its rate -> the words of which one is in the name of its formulas.
+"""Pattern of a name, with ``d`` in front for a rate -> words, one of which is in the name of each formula for it.
 
 Names without a pattern may name any formula.
 """
@@ -121,10 +121,10 @@ MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
-"""Words for rates of a top, which no component of an angular velocity is, such as omega_2 next to omega_1."""
+"""Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
 
 RARE = ("annulus", "thin tube", "conical shell")
-"""Bodies whose moments are not what a faulty formula is likely to mean."""
+"""Bodies whose moments a faulty formula is unlikely to mean."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
@@ -134,7 +134,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
-    """Return "recognised", "doubtful" or "definition" for a claim that names a formula.
+    """Return the verdict "recognised", "doubtful" or "definition" on a claim that names a formula.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
-    """Return "recognised" for a claim that is a known relation between quantities, otherwise None."""
+    """Return the verdict "recognised" on a claim that is a known relation between quantities, otherwise None."""
     assert claim.relation is not None
     _, left, right = claim.relation
     whole = NamedFormula(text(left), left, right, solve=None)
@@ -196,7 +196,7 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a single part keeps the formula from being a known one; otherwise None."""
+    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None."""
     words = words_of(named)
     nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
     plain = _plain(named)
@@ -240,15 +240,15 @@ def _has_diameter(known: Identification) -> bool:
 
 
 def _is_of_body(code: str, known: str) -> bool:
-    """Return whether a formula has another number or term than the moment of a body.
+    """Return whether a fault is a number or term in the moment of inertia of a body.
 
-    It may be right for another body; a larger moment may be that about a parallel axis.
+    Such a formula may be right for another body or, if its moment is larger, for a parallel axis.
     """
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
 
 def _misfit(name: str, known: str) -> float:
-    """Return how much a known formula differs from what a name says, and how rarely books have its body or sequence."""
+    """Return a number that grows with contradictions between a known formula and a name, and with its rarity."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
@@ -259,7 +259,7 @@ def _has_word(known: str, words: Sequence[str] | None) -> bool:
 
 
 def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
-    """Return whether one of several formulas is equal to a formula."""
+    """Return whether one of the formulas ``others`` is equal to the formula ``tree``."""
     interpreter = claim.interpreter()
     value = interpreter.read(tree)
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
@@ -300,7 +300,7 @@ def _has_terms(formula: Node) -> bool:
 
 
 def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a usual fault, undone, makes the formula a known one; otherwise None."""
+    """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None."""
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
     letters = _letters(named.formula)
     if len(letters) < LEAST_SYMBOLS_EDITED + (not _has_terms(named.formula)):
@@ -355,7 +355,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations to which the equation of the quantity's side of a claim with a formula is equal."""
+    """Return the known relations that are equal to the equation of ``tree`` and the claim's side with the quantity."""
     difference = sum_of([named.side, negated(tree)])
     try:
         value = claim.with_definitions(claim.interpreter().read(difference))
@@ -402,7 +402,7 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the formula under a root, acos, asin or atan2, and the ending of the names of such known formulas."""
+    """Return the argument of a root, acos, asin or atan2, and the ending of the names of formulas for it."""
     if is_matrix(value):
         return value, ""
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
@@ -434,10 +434,10 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
 
 
 def _keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether the places that letters say are those of a known formula.
+    """Return whether the entries, axes and kinds that names state agree with a known formula.
 
     An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
-    centre of mass stays that. A moment of inertia is no momentum, and p_phi is the momentum along z.
+    centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
@@ -455,7 +455,7 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether an angular velocity with an index is one of several in a claim: omega_2 next to omega_1."""
+    """Return whether the quantity is an angular velocity with an index next to others: omega_2 next to omega_1."""
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
         re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in _letters(named.formula)
@@ -483,7 +483,7 @@ def _plain(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return whether a known formula has another component or frame than the name of a quantity says: 0, 1 or 2."""
+    """Return how many of component and frame a known formula has other than the name of a quantity says: 0, 1 or 2."""
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip
@@ -493,9 +493,9 @@ def _misplaced(name: str, known: str) -> int:
 
 
 def _strangeness(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return how implausible a known formula is as the meaning of a claim.
+    """Return a sort key of a known formula, larger if it is less plausible as the meaning of a claim.
 
-    It is implausible if it has another component or frame than the name says, symbols of another axis, or new names.
+    The key counts a wrong component or frame, symbols with another axis, and symbols with new names.
     """
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
@@ -512,7 +512,7 @@ def _rarity(known: Identification) -> tuple[bool, int]:
 
 
 def _rank_of_sequence(known: str) -> int:
-    """Return the place of the Euler sequence in the name of a known formula among those that books use, from 0."""
+    """Return the rank, from 0 for the most usual, of the Euler sequence in the name of a known formula."""
     sequences = [word for word in known.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
     return max(usual, default=0)

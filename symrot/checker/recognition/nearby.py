@@ -1,7 +1,7 @@
-"""Known formulas of which a claim is one fault away: search by values, for the exact engine to prove.
+"""Known formulas from which a claim differs by one fault: a numeric search, whose results remain to be proven.
 
 For each known formula of the quantity that a claim names, the claim's formula should have the values of the known
-formula. :mod:`symrot.checker.recognition.parts` finds the single part, if there is one, that keeps it from them.
+formula. :mod:`symrot.checker.recognition.parts` finds the single part, if there is one, that makes the values differ.
 """
 
 import math
@@ -60,8 +60,8 @@ TIME = Node("name", "t")
 class Near(NamedTuple):
     """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
 
-    ``renamed`` is the number of symbols with new names. The claim's formula may have another unit than the known one.
-    If ``is_shifted``, it is larger, and no multiple, as a moment of inertia about a parallel axis is.
+    ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
+    than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
     """
 
     cost: float
@@ -74,7 +74,7 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return formulas for the quantity of a claim that are single changes of the claim's formula, the nearest first."""
+    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first."""
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
     letters = _letters(claim, named)
@@ -144,7 +144,7 @@ def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
 
 
 def _pieces(tree: Node) -> frozenset[int]:
-    """Return the identities of the parts of a tree."""
+    """Return the identities (``id``) of the parts of a tree."""
     return frozenset(id(node) for _, node in walk(tree))
 
 
@@ -246,7 +246,7 @@ def _search(named: NamedFormula, letters: Letters) -> Search:
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near]:
-    """Return the formulas that follow if a claim means a known formula under a renaming, with a single fault."""
+    """Return the formulas that result from one change, if a claim means a known formula under a renaming."""
     named, letters = search.named, search.letters
     atoms = {_text(atom): atom for atom in letters.atoms}
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
@@ -335,7 +335,7 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield values as they are, of a matrix transposed, of a quaternion with the scalar last, and doubled."""
+    """Yield values unchanged and, for a matrix, also transposed, doubled, and with a quaternion's scalar last."""
     yield values
     if not is_matrix(values[0]):
         return
@@ -360,7 +360,7 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a formula has another unit than a known formula, for letters with the units of the known ones.
+    """Return whether a formula has another unit than a known formula, if its letters have the known symbols' units.
 
     Both are evaluated before and after a change of the base units.
     """
@@ -397,7 +397,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor of a quantity of a unit when the base units change; None without a unit."""
+    """Return the factor by which a quantity with a unit changes if the base units change; None without a unit."""
     if unit is None:
         return None
     powers = read_unit(unit.partition(",")[0])
@@ -411,7 +411,7 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the formula of a claim should have, if its quantity has those of a known formula."""
+    """Return the values that a claim's formula should have if its quantity has the values ``target``; or None."""
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
         return None

@@ -32,7 +32,7 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 MOST_STEPS = 400
 """The most partial renamings of one known formula that are tried."""
 MOST = 6
-"""The most renamings of one known formula."""
+"""The most renamings of one known formula that are returned."""
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
@@ -56,7 +56,7 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
-    """Return how many symbols a renaming gives another axis."""
+    """Return the number of symbols to which a renaming gives another axis."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
@@ -69,7 +69,7 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that begin as a partial one does, and None for each step."""
+    """Yield the complete renamings that extend a partial one, and None at each step, to count the steps."""
     yield None
     if not order:
         used = sum(other is not None for other in renaming.values())
@@ -88,7 +88,7 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def _fits(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether a quantity of a claim may be that of a known formula, by their names."""
+    """Return whether the names of a claim's quantity and of a known formula's quantity may mean the same."""
     name = plain_name(own)
     if known == name:
         return True

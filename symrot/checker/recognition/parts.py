@@ -48,7 +48,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
-"""Factor of an angle -> the fault of a formula that has the angle without it."""
+"""Factor that an angle should have -> the fault of a formula without this factor."""
 
 Values = tuple[Any, ...]
 """One value for each point: numbers, or rows of matrices."""
@@ -65,7 +65,7 @@ class Part(NamedTuple):
 
 
 class Change(NamedTuple):
-    """What should be in the place of a part, with the code and the cost of the fault."""
+    """The tree that should replace a part, with the code and the cost of the fault."""
 
     made: Node
     code: str
@@ -256,7 +256,7 @@ def multiples(part: Part) -> Iterator[Change]:
         if value > 0:
             cost = COST["factor"] + COST["per_factor_e"] * abs(math.log(ratio))
             yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
-    elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # or the term has the change
+    elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
         if ratio == -1:
             yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
         else:
@@ -283,7 +283,7 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield another symbol in place of a symbol."""
+    """Yield every other symbol in place of a symbol."""
     if node not in letters.atoms:
         return
     alike = neighbours(node.value, letters.names) if node.kind == "name" else ()
@@ -294,7 +294,7 @@ def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Ite
 
 
 def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the part with another exponent, and without it if it is a divisor."""
+    """Yield the part with other exponents; for a divisor, yield it as a factor."""
     base, exponent = node, Fraction(1)
     if node.kind == "power" and node.args[1].kind == "number":
         base, exponent = node.args[0], node.args[1].value
@@ -314,7 +314,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield another angular function of the same angle, or the same function of another angle."""
+    """Yield the other angular functions of the same angle, and the same function of other angles."""
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args
@@ -333,7 +333,7 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield a term or a bracket with one symbol or function more, as a factor or as a divisor."""
+    """Yield a term or bracket multiplied or divided by one more symbol or function."""
     if parent in ("product", "power", "inv") or node.kind in ("neg", "inv", "number"):
         return
     if node.kind == "product":
@@ -410,7 +410,7 @@ def rational(values: Sequence[float]) -> Fraction | None:
 
 
 def near(left: float, right: float) -> bool:
-    """Return whether two values are equal within the precision of double precision."""
+    """Return whether two values are equal to nearly double precision."""
     return abs(left - right) <= CLOSE * (abs(left) + abs(right))
 
 

@@ -73,7 +73,7 @@ WORK = _new("W_k", "J")
 class Relation(NamedTuple):
     """A difference of two formulas that is zero, with a name and the derivation that it comes from.
 
-    ``words`` says what the relation gives for each symbol for which it is solved.
+    ``words`` gives, for each symbol for which the relation is solved, the first words of that formula's name.
     """
 
     title: str
@@ -83,7 +83,7 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield the formula for each quantity with words, of which the relation is a polynomial of degree 1 or c*x^2 + d.
+    """Yield (name, source, formula) for each symbol in ``words`` if the relation is linear in it or in its square.
 
     The name of a formula for a square ends with ", squared".
     """
@@ -196,7 +196,7 @@ def _top() -> tuple[Matrix, Expr]:
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield the condition of steady precession, for a weight and for a torque, in the spin and in its rate."""
+    """Yield conditions of steady precession, for a weight and for a torque, with the spin or the spin angle's rate."""
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):

@@ -1,4 +1,4 @@
-"""Renamings of the symbols of a known formula that keep the axes and the angles which the names say.
+"""Renamings of the symbols of a known formula that respect the axes and angles in the names of the symbols.
 
 ``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` is Euler's equation if I_2 is renamed I_3 and I_3 is renamed I_2, but no
 reader means that: omega_2 and omega_3 keep their axes.
@@ -54,7 +54,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether the numbers in the names of an earlier and a later value, as omega_1 and omega_2, increase."""
+    """Return whether the new names of an earlier and a later value have increasing numbers: omega_1 and omega_2."""
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -63,7 +63,7 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return the component of a known formula with the name of a quantity, as a pair of a renaming; or no pair."""
+    """Return [(component of a known formula, name of a quantity)], as for a renaming; or an empty list."""
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
@@ -75,7 +75,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 @cache
 def _angle(name: str) -> str:
-    """Return the name of the quantity of which a name is a rate or a value in time; any other name as it is."""
+    """Return the quantity in the name of a rate or of a value in time: phi for dphi; any other name unchanged."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
@@ -94,12 +94,12 @@ def axes_of(name: str) -> frozenset[int]:
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether the entries of a rotation matrix keep their places, or all have those of the transpose."""
+    """Return whether all entries of a rotation matrix stay in their places, or all move as in the transpose."""
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether the new axes are the known ones in another order of all three."""
+    """Return whether an order of the three axes turns each known axis into the new one."""
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

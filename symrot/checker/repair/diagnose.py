@@ -44,7 +44,7 @@ MOST_EXPANDED = 1_000_000
 """The most products of terms to expand the claim and all candidates; a claim that needs a fourth gets no repair."""
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
-"""The faults that are named even if the only repair makes both sides the same formula: it is not offered."""
+"""The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
 
 AS_NEAR = 0.35
 """The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair."""
@@ -78,7 +78,7 @@ class _Search:
 
     def __init__(self, claim: Claim, decision: Decision) -> None:
         self.numeric = NumericFilter(claim)
-        self.conditional = bool(decision.requires)  # then it lacks the condition, not a term
+        self.conditional = bool(decision.requires)  # then the claim lacks its condition, not a term
         self.products = decision.products
         self.seen: set[tuple[float, ...]] = set()  # values of the candidates that were decided
         self.alike: list[Candidate] = []  # candidates with the values of an earlier one
@@ -114,7 +114,7 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further repairs that are the given repairs written in another way, if they cost about as little."""
+        """Return further repairs with the values of the given ones but another form, if they cost about as little."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -163,7 +163,7 @@ class _Search:
     def is_tautology(self, changes: Sequence[Change]) -> bool:
         """Return whether an edit made both sides the same formula, so that the edited claim says nothing.
 
-        A side that may not be edited is a result of its own; a side that becomes equal to it is a good repair.
+        If one side may not be edited, it is the result to reach: then the other side may become the same formula.
         """
         if len(self.numeric.sides_to_edit) < len(SIDES):
             return False
@@ -171,9 +171,9 @@ class _Search:
         return left == right
 
     def cancels(self, equation: Equation) -> bool:
-        """Return whether a repaired side cancels to a number, as ``x/y`` does in ``x/(x/y)/y``, or both as in ``x/x``.
+        """Return whether one repaired side cancels to a number, such as ``x/(x/y)/y``, or both do, as in ``x/x == 1``.
 
-        A side that becomes zero is no such side.
+        A side that becomes zero does not count.
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))

@@ -89,7 +89,7 @@ MOST_TERMS_IN_PAIRS = 6
 """The most terms of a sum of which two signs are changed together."""
 
 FEW = 3
-"""The number of occurrences of an angle up to which all of them are as easily wrong together as one alone."""
+"""Up to this number of occurrences of an angle, all of them are as likely to be wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
 OFTEN_SQUARED = ("exp", "sinh", "cosh", "tanh")
@@ -226,7 +226,7 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a transpose is no useful edit: it changes nothing, or the shape alone, or equals another edit."""
+    """Return whether transposing a call is a useless edit: it changes nothing or only the shape, or equals another."""
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 

@@ -49,9 +49,9 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives an entry its correct values at the test points.
+    """Return the cheapest edit that gives an entry its correct values at the test points, or None.
 
-    Its code is ``none`` if the entry has these values already.
+    The code of the edit is ``none`` if the entry has these values already.
     """
 
     def fits(tree: Node) -> bool:

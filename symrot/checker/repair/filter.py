@@ -72,7 +72,7 @@ class NumericFilter:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The trees that may be edited, by place: the sides and the used definitions that the claim does not fix."""
+        """The places that the claim allows to edit: ``"left"``, ``"right"`` and the names of used definitions."""
         return tuple(place for place in (*SIDES, *self.used) if place in self.claim.editable)
 
     @property
@@ -108,7 +108,7 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited tree says something.
+        """Return whether an edited tree makes sense in its place.
 
         A side must be more than a number, and a definition must not use its own name.
         """

@@ -2,7 +2,7 @@
 
 At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
 So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
-factors multiply in the same way. Each single edit is evaluated once; a table gives the edits that complete it.
+factors multiply in the same way. Each single edit is evaluated once; a look-up gives the edits that complete it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -55,7 +55,7 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return the differences of the sides, and by how much each edit of a side lessens them."""
+    """Return the differences of the sides at a point, and by how much each single edit reduces them."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -72,7 +72,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return the quotient of two scalar sides, and by which factor each edit of a side lessens it."""
+    """Return the quotient of two scalar sides at a point, and the factor by which each edit of a side reduces it."""
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
@@ -92,7 +92,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of edits whose effects together are the whole effect; ``rest`` says what one edit leaves to do."""
+    """Yield pairs of edits that together have the whole effect; ``rest`` returns what one edit leaves to the other."""
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)
     if not scale:

@@ -332,7 +332,7 @@ def points(
     """Return random points, the same in every run, that obey the hypotheses to double precision.
 
     Symbols lie between 0.3 and ``most`` before Newton's method moves them until the hypotheses hold; if that fails,
-    there are fewer than ``count`` points. The values of the trees in ``remembered`` (their ids) are stored.
+    there are fewer than ``count`` points. Each point also stores the values of the trees whose ids are ``remembered``.
     """
     accepted = []
     for seed in range(3 * count):

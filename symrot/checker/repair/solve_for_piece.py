@@ -230,7 +230,7 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that a part must have at the test points for the claim to hold; None if there are none."""
+    """Return the values that a part must have at the test points for the claim to hold; None if none are found."""
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -245,7 +245,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown that makes both sides equal, by the secant method; None if it finds none."""
+    """Return the value of the unknown that makes both sides equal, by the secant method; None if that fails."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value

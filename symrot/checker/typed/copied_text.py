@@ -22,13 +22,13 @@ _AND = re.compile(r"(?<=\s)and(?=\s)")
 
 @dataclass(frozen=True)
 class Copied:
-    """A text of the same length without what surrounds its formulas, and what was left out.
+    """A text with blanks in place of what surrounds its formulas, so that positions stay the same.
 
     Attributes
     ----------
     text : str
     where : int
-        The place from which the text has ``where`` clauses; -1 without them.
+        The position at which the ``where`` clauses start; -1 if there are none.
     numbers : tuple of str
         The numbers of equations.
     notes : tuple of str
@@ -74,7 +74,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return clauses after ``where`` with blanks in place of those without an equation, and these."""
+    """Return clauses after ``where``, with blanks in place of clauses without an equation, and a list of those."""
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

@@ -46,7 +46,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names with a meaning: declared symbols, functions of time and matrices, and single names that the text uses.
+    """The names with a meaning: declared symbols, functions of time and matrices, and names that occur by themselves.
 
     ``vectors`` are the names on either side of a cross product, which are vectors.
     """
@@ -145,15 +145,15 @@ class Cursor(ABC):
 
     @abstractmethod
     def expression(self) -> Node:
-        """Read a sum."""
+        """Read a sum and return its tree."""
 
     @abstractmethod
     def factor(self) -> Node:
-        """Read a power, with the signs before it."""
+        """Read a power, with the signs before it, and return its tree."""
 
     @abstractmethod
     def power(self) -> Node:
-        """Read a number, name, call or bracket, with its exponents."""
+        """Read a number, name, call or bracket, with its exponents, and return its tree."""
 
     def row(self) -> list[Node]:
         entries = [self.expression()]
@@ -169,7 +169,7 @@ class Cursor(ABC):
         return members
 
     def called(self, function: str, token: Token) -> Node:
-        """Read the arguments, in brackets, of a call of a function."""
+        """Read the arguments, in brackets, of a function and return the tree of the call."""
         self.expect("(")
         arguments = self.members(")")
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:

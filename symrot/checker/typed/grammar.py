@@ -29,7 +29,7 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return where the left side of a cross product starts: at a matrix before its vector, ``R a``, or at the last."""
+    """Return the index at which the left side of a cross product starts: at R in ``R a``, else at the last factor."""
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
@@ -66,9 +66,9 @@ class Parser(PiecesPart):
         return signs, sides
 
     def head(self) -> Node | None:
-        """Read the head of a formula, as in ``R(φ) = ..``, as the name R; None if the text does not start with one.
+        """Read a head, such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if the text has no head.
 
-        Its arguments are names of the formula, or the formula is a matrix.
+        The arguments of a head occur in the formula after it, or this formula is a matrix.
         """
         name, texts = self.token(), [token.text for token in self.tokens]
         end = texts.index(")") if ")" in texts else 0
@@ -127,7 +127,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Read the formula after a slash: without brackets, one factor or the whole product that follows.
+        """Read and return the formula after a slash: without brackets, one factor or the whole product that follows.
 
         Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
         the product.
@@ -160,7 +160,7 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Read a product with the sign ×: a cross product if a side is a vector, otherwise a product of numbers."""
+        """Read ``×`` and the factor after it, and put their product into ``factors``; for vectors, a cross product."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
@@ -179,7 +179,7 @@ class Parser(PiecesPart):
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Read a product with a dot after a vector, which is a scalar product."""
+        """Read a dot after a vector and the factor behind it; put their scalar product into ``factors``."""
         self.plain = True
         self.next()
         right = self.factor()
@@ -224,7 +224,7 @@ class Parser(PiecesPart):
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:
-        """Read the exponent after ``^``: a factor, or the letter T for the transpose."""
+        """Read the exponent after ``^`` and return the power of ``base``, or its transpose (T) or conjugate (*)."""
         if self.peek() == "*":
             self.next()
             return Node("call", CONJUGATE, (base,), self.span(start))

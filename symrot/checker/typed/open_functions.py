@@ -15,7 +15,7 @@ class OpenFunctionsPart(Cursor):
     """The part of the parser that reads functions without brackets, and derivatives written as quotients."""
 
     def applied(self, function: str, token: Token) -> Node:
-        """Read a function without brackets: ``sin 2x``, ``sin^2 x``, ``tan^-1 x``."""
+        """Read what follows the name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or its power."""
         exponent = self.function_exponent(token)
         inverse = exponent == number(-1) and function in ("sin", "cos", "tan")
         if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
@@ -29,7 +29,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read the exponent between a function and its argument, as the 2 of ``sin^2 x``."""
+        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``, or None."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True
@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read the argument of a function without brackets; return the call, and an exponent of the whole call."""
+        """Read an argument without brackets; return the call, and an exponent of the whole call or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -130,7 +130,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Read the formula after a root sign √, to which no bar shows the end."""
+        """Read the formula after a root sign √, which has no bar to show its end; return the square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -150,7 +150,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
-        """Read ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)`` as a derivative; None for any other text."""
+        """Read ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)`` and return the derivative; otherwise None."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
         if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
@@ -166,7 +166,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent or a bracket follows the token that is ``ahead`` tokens after the cursor."""
+        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -181,7 +181,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
 
     def derivative_by(self, token: Token) -> Node | None:
-        """Read ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` as a derivative by x; None for any other text."""
+        """Read ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` and return the derivative by x; None for any other text."""
         if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
             return None
         if token.text == "d" and self.peek() == "(" and (end := self.end_of_bracket()) is not None:
@@ -210,7 +210,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
-        """Return the place after the bracket at the cursor if ``/dx`` follows it; None otherwise."""
+        """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it; None otherwise."""
         depth, place = 0, 0
         while self.token(place).kind != "end":
             depth += (self.token(place).text == "(") - (self.token(place).text == ")")
@@ -220,7 +220,7 @@ class OpenFunctionsPart(Cursor):
         return None
 
     def derivative_of_bracket(self, token: Token, end: int) -> Node:
-        """Read ``d(x^2)/dx`` as a derivative; the bracket at the cursor has ``end`` tokens."""
+        """Read ``(x^2)/dx`` after a d and return the derivative; the bracket at the cursor has ``end`` tokens."""
         variable, after = self.differential(end + 1)
         length = after - end
         self.plain = True
@@ -233,19 +233,22 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return the order of a derivative that is written at a place, 1 without one, and the place after it."""
+        """Return the order of a derivative, written as a power at a place (1 without a power), and the place after it.
+
+        Places are counted in tokens from the cursor.
+        """
         token, after = self.token(place), self.token(place + 1)
         if token.text in ("^", "**") and after.text.isdigit():
             return int(after.text), place + 2
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return the name at a place if no blank is in front of it, and the place after it; an empty name otherwise."""
+        """Return the name at a place, empty if there is none or a blank is before it, and the place after the name."""
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return the variable of ``dx`` or ``dθ`` at a place, and the place after it; an empty name otherwise."""
+        """Return the variable of ``dx`` or ``dθ`` at a place (empty if there is none), and the place after it."""
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place

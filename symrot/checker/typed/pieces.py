@@ -102,7 +102,7 @@ class PiecesPart(OpenFunctionsPart):
         return True
 
     def method(self, node: Node, start: int) -> Node:
-        """Read a method of a matrix after a dot, such as ``.T``."""
+        """Read a method of a matrix after a dot, such as ``.T``, and return its value as a tree."""
         token = self.token()
         if token.kind != "name" or token.text not in METHODS:
             names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
@@ -190,7 +190,7 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is not a built-in function: a symbol, perhaps before a bracket, or a function of time."""
+        """Read a name that is not built in; return a symbol, or a function with the arguments in its bracket."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if word == "S" and self.peek() == "(" and inside[0] in self.vocabulary.vectors and inside[1] == ")":
@@ -257,7 +257,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
 
     def holds_skew_vector(self) -> bool:
-        """Return whether the square bracket before the cursor is one of ``[R ω]×``: without commas, before a cross."""
+        """Return whether the square bracket before the cursor is that of a skew matrix, ``[R ω]×``: no commas, a ×."""
         inside = [token.text for token in self.tokens[self.index :]]
         end = inside.index("]") if "]" in inside else 0
         cross = self.token(end + 1)
@@ -281,7 +281,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", "abs", (inner,), self.span(token.start))
 
     def over_body(self, token: Token) -> Node:
-        """Read ``∫ x² dm``, an integral over a body that the text does not describe."""
+        """Read ``∫ x² dm``, an integral over a body that the text does not describe; return its tree."""
         self.plain = True
         self.in_integral = True
         inner = number(1) if self.is_element() else self.expression()

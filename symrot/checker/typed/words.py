@@ -37,7 +37,7 @@ ALIASES = {
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
-"""Other names of built-in functions -> the name here. Names that SymPy's own text uses are among them."""
+"""Other names of built-in functions -> the name in trees. Names that SymPy's own text uses are among them."""
 
 _JOINED = re.compile(
     rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
@@ -148,7 +148,7 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def lost_power(word: str) -> tuple[str, ...]:
-    """Return the pieces of ``sin2`` where its raised digit was lost, as in text copied from a PDF: sin, ^ and 2.
+    """Return sin, ^ and 2 for ``sin2``, which may be sin² copied from a PDF; an empty tuple for other words.
 
     Examples
     --------
@@ -160,7 +160,7 @@ def lost_power(word: str) -> tuple[str, ...]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens, with each of the words ``words`` replaced by the tokens of the names that it consists of."""
+    """Yield tokens in which the tokens of several names replace each word in ``words``."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):

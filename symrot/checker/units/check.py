@@ -1,7 +1,8 @@
 """The check of units: terms of a sum, and the two sides of an equation, must have one unit.
 
 Units are stated in the claim, or conventional (:data:`symrot.checker.units.units.CONVENTIONAL_UNITS`), or inferred;
-only a contradiction is an error. The entries of a matrix may have different units. The verdict does not depend on it.
+only a contradiction is an error. The entries of a matrix may have different units. The verdict on a claim does not
+depend on this check.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,7 +27,7 @@ def check_dimensions(
     hypotheses: Sequence[tuple[Node, Node]] = (),
     units: Mapping[str, str] | None = None,
 ) -> Dimensions:
-    """Return whether the units of an equation fit together.
+    """Return the check of the units of an equation: whether they fit together.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """The factors from units to SI units, exact, and the numbers with units in a text such as ``1500 rpm = 157.08 rad/s``.
 
-A text has units if it consists of numbers with units, and of a name for the result. In ``T = 2 m g`` the letters are
-quantities: letters that are units as well count as units only next to a unit with several letters, or alone.
+A text has units if it consists of numbers with units, and perhaps of one name for the result. In ``T = 2 m g`` the
+letters are quantities: a letter such as m is read as a unit only if the text has a unit with several letters, or no
+other names.
 """
 
 import re
@@ -131,7 +132,7 @@ class UnitProduct:
 class Measured:
     """A text whose numbers have units: the text with a name for each product of units, and these products.
 
-    It ``is_sure`` that they are units if one of them has several letters, or if the text has no other name.
+    ``is_sure`` says that these certainly are units: one of them has several letters, or the text has no other name.
     ``others`` are other readings of the text, each with the words for what it reads in another way.
     """
 

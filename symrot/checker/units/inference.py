@@ -1,4 +1,4 @@
-"""The units of the pieces of a formula (names, sums, products, powers, matrices), and where they contradict."""
+"""The units of the pieces of a formula (names, sums, products, powers, matrices), and their contradictions."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -60,13 +60,13 @@ class UnitInference:
     known : bool
         Whether any unit is known.
     unitless : bool
-        Whether a definition is a number without its unit, which others may lack as well.
+        Whether a definition is a number without its unit; other numbers may then lack their units as well.
     fresh : int
         The number of unknown units so far.
     faults : list of str
         Contradictions, as sentences.
     place : str
-        The tree that is being followed, in words.
+        Words for the part of the claim that is being followed, for messages.
     """
 
     units: dict[str, Dimension]
@@ -96,7 +96,7 @@ class UnitInference:
         self.values[name] = value
 
     def relation(self, left: Node, right: Node, what: str) -> None:
-        """Require that the two sides of an equation have one dimension."""
+        """Require that both sides of an equation have the same dimension; ``what`` names the equation in messages."""
         values: list[Value] = []
         for node, side in ((left, "left"), (right, "right")):
             self.place = f"in {what}" if what else f"on the {side} side"
@@ -155,7 +155,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have one dimension, entry by entry, and return this dimension."""
+        """Require that two values have the same dimension, entry by entry, and return it; ``words`` state a fault."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
@@ -188,7 +188,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number."""
+        """Require that a scalar is a pure number, and return its dimension; ``words`` state a fault."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)

@@ -1,7 +1,7 @@
 """Units as products of powers: reading, printing, and equations between them, solved over the rationals.
 
 A dimension maps bases (kg, m, s, A, K, mol, cd), and symbols of unknown unit, to rational exponents; an angle has no
-dimension. Scales are ignored: mm and m have one dimension.
+dimension. Scales are ignored: mm and m have the same dimension.
 """
 
 import re
@@ -141,7 +141,7 @@ _KNOWN = {name: _plain(text) for text, names in DERIVED.items() for name in name
 
 @dataclass
 class UnitSystem:
-    """Equations between dimensions (exponents of base units); ``solved`` has the unknown units that follow so far."""
+    """Equations between dimensions (exponents of base units); ``solved`` maps unknown units to their values."""
 
     solved: dict[str, Dimension] = field(default_factory=dict)
 
@@ -155,7 +155,7 @@ class UnitSystem:
     def equate(self, first: Dimension, second: Dimension) -> bool:
         """Add the equation that two dimensions are equal.
 
-        Return False, and add nothing, if that contradicts the others.
+        Return True. If the equation contradicts earlier ones, add nothing and return False.
         """
         quotient = self.reduced(over(first, second))
         unknown = [name for name in quotient if not name.startswith("[")]

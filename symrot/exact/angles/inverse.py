@@ -33,7 +33,7 @@ def _atan2(y: Expr, x: Expr) -> Pair:
 
 
 def _half(cosine: Expr, sine: Expr) -> Pair:
-    """Return the cosine and sine of half an angle from those of the angle, which lies strictly between -pi and pi."""
+    """Return the cosine and sine of half an angle between -pi and pi from the cosine and sine of the angle."""
     below = sqrt(HALF + cosine / 2)
     return below, sine / (2 * below)
 

@@ -14,7 +14,7 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
     """Return whether the cosine and sine of ``coefficient * atom`` have formulas without trigonometric functions.
 
-    They have if the atom is an inverse trigonometric function and the coefficient's denominator is a power of two.
+    This is so if the atom is an inverse trigonometric function and the coefficient's denominator is a power of two.
     """
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 

@@ -121,12 +121,12 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Improve a point one value at a time, as long as fewer conditions are violated after each change."""
+        """Return a point improved one value at a time, as long as each change leaves fewer conditions violated."""
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Improve a point by steps that reduce the violation of the conditions; a step without effect is halved."""
+        """Return a point improved by steps that reduce the violation of conditions; a step without effect is halved."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}

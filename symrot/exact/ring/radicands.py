@@ -115,7 +115,7 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
-    """Return a polynomial as a rational number times powers of irreducible factors; a large one is not factored."""
+    """Return a polynomial as a rational number times powers of factors: irreducible ones, or one large polynomial."""
     if poly.is_ground or len(poly) > MOST_TERMS:
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
     constant, pairs = poly.factor_list()

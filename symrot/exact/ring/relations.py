@@ -98,7 +98,7 @@ def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
 
 
 def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Apply a rule once: replace every power >= ``rule.power`` of its variable in a polynomial."""
+    """Return a polynomial after one use of a rule, which replaces powers >= ``rule.power`` of the rule's variable."""
     place, power = rule.generator, rule.power
     low: dict[tuple[int, ...], Any] = {}
     high: dict[int, dict[tuple[int, ...], Any]] = {}

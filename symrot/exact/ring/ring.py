@@ -108,7 +108,7 @@ class FormulaRing:
         self.exponents: dict[Expr, LinearForm] = {}  # argument of an exponential -> its linear form
         self.rewritten: dict[Expr, Expr] = {}  # node -> the equal expression that is read instead
         self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> its factors and roots
-        self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> whether it is in scope
+        self.leaves: dict[Expr, bool] = {}  # symbol or function -> whether it is in the scope of the theorem
         self.logarithms = self._sums_of_logarithms([*expressions, *relations, *domain])
         self.own_logarithms = {leaf for total in self.logarithms.values() for leaf in total.atoms(sympy.log)}
         self._collect([*expressions, *relations, *domain])

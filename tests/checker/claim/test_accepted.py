@@ -109,7 +109,7 @@ def test_a_wrong_formula_is_found_and_repaired_in_the_same_notation(claim, outco
 
 
 def test_a_rotation_of_axes_is_read_where_one_of_vectors_does_not_fit():
-    """Some books rotate the axes by the angle a, which is the transposed matrix; the verdict says which one it means."""
+    """Some books rotate the axes by the angle a, with the transposed matrix; the verdict says which is meant."""
     of_vectors = symrot.check("R_z(a) = [[cos a, -sin a, 0], [sin a, cos a, 0], [0, 0, 1]]")
     of_axes = symrot.check("R_z(a) = [[cos a, sin a, 0], [-sin a, cos a, 0], [0, 0, 1]]")
     assert of_vectors.verdict == of_axes.verdict == "true"

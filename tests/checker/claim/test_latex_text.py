@@ -1,4 +1,4 @@
-"""LaTeX as it stands in lectures, papers and posts: short forms, macros, both signs, and texts with two readings."""
+"""LaTeX as lectures, papers and posts have it: short forms, macros, both signs, and texts with two readings."""
 
 import pytest
 

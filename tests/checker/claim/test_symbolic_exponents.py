@@ -1,4 +1,4 @@
-"""Powers with an exponent that is no number, over a positive base; the letter e, and the letters i and j."""
+"""Powers of a positive base with an exponent that is not a number; the letter e, and the letters i and j."""
 
 import pytest
 
