@@ -47,7 +47,7 @@ FIXED = ["T = kinetic energy of rotation", "I = moment of inertia about the fixe
     )),
     (r"P = \frac12 M\omega", "false", {"where": ["P = power of the torque M about a fixed axis"]}),
     (r"P = M\omega", "true", {"where": ["P = power of the torque M about a fixed axis"]}),
-    ("Omega = M g l/(I_1 omega_3)", "recognised", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
+    ("Omega = M g l/(I_1 omega_3)", "definition", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
     ("R = R_z(psi) R_y(theta) R_x(phi)", "true", {"sequence": "ZYX"}),
     ("R = (R_z(psi) R_y(theta) R_x(phi))^T", "recognised", {"sequence": "ZYX"}),
     ("Omega = M g l/(I_3 omega_3)", "true", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
@@ -327,3 +327,9 @@ def test_the_moments_of_a_body_are_true_for_this_body_alone(kind):
         assert symrot.check(claim, body=f"{kind.title} about {match[1]}").verdict == "true", known
         other = "torus" if kind.title != "torus" else "disk"
         assert symrot.check(claim, body=f"{other} about its centre of mass", repair=False).verdict != "true", known
+
+
+def test_letters_with_other_meanings_accuse_nobody():
+    """The vector form of a gyroscope's moment is correct, whatever words are used for its rates."""
+    claim = r"\mathbf M = I\,\boldsymbol\Omega\times\mathbf p"
+    assert symrot.check(claim, where=["p = spin", "Omega = precession rate"]).verdict in ("recognised", "definition")

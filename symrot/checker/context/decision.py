@@ -234,7 +234,11 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
         return verdict
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
-        reasons = list(misfits(context, known.name, quantity)) or ["with other letters"]
+        reasons = list(misfits(context, known.name, quantity))
+        if not reasons and verdict.verdict == "definition":  # an author may use other words for a letter
+            reason = f"the context gives the letters other meanings than in the formula of the {known.name}"
+            return replace(verdict, reason=reason)
+        reasons = reasons or ["with other letters"]
         is_partly_known = context.body is not None and not context.body.kind.shape
         if is_partly_known and verdict.verdict == "definition" and "of another body" in reasons:
             return verdict  # symrot derives a few formulas only for such a body
