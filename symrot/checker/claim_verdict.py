@@ -22,6 +22,9 @@ MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
+WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
+
+
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
     """Return the verdict on a claim: on its usual reading, or on another reading if that one alone is true."""
     try:
@@ -107,6 +110,8 @@ def _on_name(
             from symrot.checker.context.decision import in_context
 
             verdict = in_context(claim, named, verdict)
+    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
+        verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 

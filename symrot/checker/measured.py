@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.tree import Node, number, product, walk
@@ -52,8 +53,26 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
     plain = claim.with_relation((sign, left, right), units={}, alternatives=())
     rounded = _rounded(plain, sides, factors, measured)
     verdict = decide(plain) if rounded is None else rounded
+    if verdict.verdict == "false" and verdict.diagnosis.code != "digits":
+        verdict = replace(verdict, **_right_number(plain, sides, factors, measured))
     factors_in_words = [unit.note for unit in measured.units.values() if unit.note]
     return replace(verdict, dimension=dimensions, notes=(*verdict.notes, *factors_in_words))
+
+
+def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
+    """Return the diagnosis and the repair of an equation whose right side is a whole number with its unit."""
+    left, right = sides
+    digits, unit = _decimal(right, measured.text, r"\d+")
+    try:
+        value = claim.interpreter().read(product([_in_si(left, factors), Node("inv", None, (factors[unit],))]))
+    except (InputError, KeyError):
+        value = None
+    if not getattr(value, "is_Rational", False):
+        return {"diagnosis": Diagnosis("none", ""), "repairs": ()}
+    unit_typed = measured.units[unit].text
+    sentence = f"a number is wrong: the value is {value} {unit_typed}, not {digits}"
+    repairs = _with_number(measured.source, digits, unit_typed, f"{value}" if value.q == 1 else f"({value})", True)
+    return {"diagnosis": Diagnosis("digits", sentence), "repairs": repairs}
 
 
 def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
@@ -65,6 +84,7 @@ def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
     """Return the verdict on an equation with a decimal number and its unit as a side, by rounding; None for others."""
+    verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
         other_digits, _ = _decimal(other, measured.text)
@@ -74,31 +94,45 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
             continue
         value = product([_in_si(other, factors), Node("inv", None, (factors[unit],))])
         worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
-        decision = decide_value(worked)
-        if decision.verdict == "true":
-            return Verdict(
-                "true", notes=(f"to the digits given: the value rounds to {digits} {measured.units[unit].text}",)
-            )
-        if decision.verdict != "false":
-            return None
-        right = rounded_value(worked)
-        if not right:
-            return Verdict("false", counterexample=decision.counterexample)
-        place = measured.source.rfind(digits) if side is sides[1] else measured.source.find(digits)
-        repaired = measured.source[:place] + right + measured.source[place + len(digits) :]
-        sentence = f"a number is wrong: the value rounds to {right} {measured.units[unit].text}, not to {digits}"
-        return Verdict("false", counterexample=decision.counterexample, diagnosis=Diagnosis("digits", sentence),
-                       repairs=(Repair(repaired.strip(), "digits", 1.0),))  # fmt: skip
-    return None
+        verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))
+    words = [verdict.verdict if verdict else "undecided" for verdict in verdicts]
+    return next((verdicts[words.index(word)] for word in ("true", "undecided", "false") if word in words), None)
 
 
-def _decimal(tree: Node, source: str) -> tuple[str, str]:
-    """Return the digits and the unit of a number with a unit, as typed; empty texts for any other tree."""
+def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
+    """Return the verdict on a value that is printed with digits and a unit, on the left or right side of a text."""
+    digits = worked.printed
+    decision = decide_value(worked)
+    if decision.verdict == "true":
+        return Verdict("true", notes=(f"to the digits given: the value rounds to {digits} {unit}",))
+    if decision.verdict != "false":
+        return None
+    right = rounded_value(worked)
+    if not right:
+        return Verdict("false", counterexample=decision.counterexample)
+    sentence = f"a number is wrong: the value rounds to {right} {unit}, not to {digits}"
+    repairs = _with_number(measured.source, digits, unit, right, is_right)
+    return Verdict(
+        "false", counterexample=decision.counterexample, diagnosis=Diagnosis("digits", sentence), repairs=repairs
+    )
+
+
+def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
+    """Return the repair that puts the right number before its unit, on the left or right side of a text."""
+    places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
+    if not places:
+        return ()
+    start, end = places[-1 if is_right else 0].span()
+    return (Repair((source[:start] + right + source[end:]).strip(), "digits", 1.0),)
+
+
+def _decimal(tree: Node, source: str, pattern: str = r"\d+\.\d+") -> tuple[str, str]:
+    """Return the digits, of a pattern, and the unit of a number with a unit; empty texts for any other tree."""
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
     first, unit = tree.args
     digits = source[first.span[0] : first.span[1]]
-    return (digits, str(unit.value)) if re.fullmatch(r"\d+\.\d+", digits) else ("", "")
+    return (digits, str(unit.value)) if re.fullmatch(pattern, digits) else ("", "")
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:

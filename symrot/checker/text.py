@@ -5,7 +5,7 @@ lines are decided one by one; a line that gives a name to a formula defines the 
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
@@ -22,7 +22,14 @@ from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
-from symrot.checker.units.conversion import Measured, measured_text
+from symrot.checker.units.conversion import (
+    ONE_PER_SECOND,
+    STANDARD_GRAVITY,
+    Measured,
+    measured_text,
+    numeric_end,
+    unit_beside_letters,
+)
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.errors import InputError
 
@@ -123,13 +130,72 @@ def verdict_on_readings(
     if late:
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
-    return replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
+    return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
+
+
+def _beside_units(verdict: Verdict, source: str) -> Verdict:
+    """Return the verdict on a text read as letters, or "definition" if it has both letters and numbers with units.
+
+    Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
+    """
+    unit = "" if verdict.recognised_as else unit_beside_letters(source)
+    if not unit:
+        return verdict
+    beginning, end = numeric_end(source)
+    numbers = verdict_on_text(end) if end else None
+    notes = tuple(note for note in verdict.notes if not note.endswith("is read as a name, not as a unit"))
+    if numbers is not None:
+        notes = (*numbers.notes, f"{end} is {OUTCOMES[numbers.verdict]}; {beginning} has letters and is not decided")
+        if numbers.verdict == "false":
+            return replace(numbers, text=verdict.text, notes=notes)
+    elif verdict.verdict not in ("false", "conditional", "undecided"):
+        return verdict
+    reason = f"it has letters and the number with a unit {unit}: it is an equation for the letters, and no identity"
+    return Verdict("definition", text=verdict.text, context=verdict.context, reason=reason, notes=notes,
+                   seconds=verdict.seconds)  # fmt: skip
 
 
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units."""
+    """Return the verdict on a text whose numbers have units: on its reading that is true, or whose units fit.
+
+    Raises
+    ------
+    InputError
+        For a text whose usual reading has no meaning, and which is not true in another reading.
+    """
+    verdicts, refusal = [], None
+    for words, reading in (("", measured), *measured.others):
+        try:
+            verdicts.append((words, _on_units(reading, source, assume, units, repair)))
+        except InputError as reason:
+            refusal = refusal or reason
+    usual = next((verdict for words, verdict in verdicts if not words), None)
+    fitting = [pair for pair in verdicts if pair[1].diagnosis.code != "dimension"] or verdicts
+    true = (pair for pair in fitting if pair[1].verdict == "true" and pair[0] != ONE_PER_SECOND)
+    words, verdict = next(true, fitting[0] if fitting else ("", None))
+    if verdict is None or (refusal is not None and usual is None and verdict.verdict != "true"):
+        raise refusal or InputError(f"expected numbers with units, got {source[:60]!r}")
+    if words == STANDARD_GRAVITY and verdict.verdict == "false":
+        sentence = f"g is an acceleration here, and its value is not stated; {words}, the text is false"
+        return Verdict("definition", text=source.strip(), reason=sentence)
+    if words:
+        verdict = replace(verdict, notes=(*verdict.notes, f"read {words}"))
+    elif usual is verdict:
+        notes = [
+            f"{others}, it is {OUTCOMES[other.verdict]}"
+            for others, other in verdicts
+            if other.verdict != verdict.verdict and other.diagnosis.code != "dimension"
+        ]
+        verdict = replace(verdict, notes=(*verdict.notes, *notes))
+    return verdict
+
+
+def _on_units(
+    measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
+) -> Verdict:
+    """Return the verdict on one reading of a text whose numbers have units."""
     reading = readings_of(measured.text)[0]
     lines = claims_of_reading(reading, measured.text, assume, units)
     notation = notation_of(reading)
@@ -138,10 +204,11 @@ def _on_measured(
         for line in lines
         for claim in line
     ]
-    verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation)
+    verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation, measured.units)
     diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
     notes = tuple(map(measured.restored, verdict.notes))
-    return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes)
+    repairs = tuple(repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units
+    return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes, repairs=repairs)
 
 
 def names_of(reading: Reading) -> set[str]:
@@ -272,14 +339,19 @@ def _has_indices(claim: Claim) -> bool:
     return any(f"_{index}" in name[-2:] for pair in pairs for index in pair for name in names)
 
 
-def _on_parts(lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation) -> Verdict:
-    """Return the verdict on a chain or on several lines: the worst verdict on a part, and a note on each part."""
+def _on_parts(
+    lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
+) -> Verdict:
+    """Return the verdict on a chain or on several lines: the worst verdict on a part, and a note on each part.
+
+    ``units`` are the names that stand for units.
+    """
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
     for number, line in enumerate(lines):
         own = [next(remaining) for _ in line]
-        own = _as_named_chain(line, own, notation)
+        own = own if units else _as_named_chain(line, own, notation)
         later = {name for other in lines[number + 1 :] for claim in other for name, _ in claim.define}
         named = named_formula(line[0])
         defines = named is not None and named.name in later

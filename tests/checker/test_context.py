@@ -47,7 +47,7 @@ FIXED = ["T = kinetic energy of rotation", "I = moment of inertia about the fixe
     )),
     (r"P = \frac12 M\omega", "false", {"where": ["P = power of the torque M about a fixed axis"]}),
     (r"P = M\omega", "true", {"where": ["P = power of the torque M about a fixed axis"]}),
-    ("Omega = M g l/(I_1 omega_3)", "recognised", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
+    ("Omega = M g l/(I_1 omega_3)", "definition", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
     ("R = R_z(psi) R_y(theta) R_x(phi)", "true", {"sequence": "ZYX"}),
     ("R = (R_z(psi) R_y(theta) R_x(phi))^T", "recognised", {"sequence": "ZYX"}),
     ("Omega = M g l/(I_3 omega_3)", "true", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
@@ -99,12 +99,115 @@ def test_the_letters_of_a_body_are_its_dimensions():
     assert symrot.check("I_zz = m (a^2 + c^2)/12", body="box of sides a, b, c about its centre").verdict == "false"
 
 
-def test_words_about_another_place_are_not_taken_for_the_centre_of_mass():
-    verdict = symrot.check(
-        "I_xx = m (3 R^2 + 4 L^2)/12", body="solid cylinder about the centre of a hole", repair=False
-    )
-    assert verdict.verdict == "recognised"
-    assert "of the context, these words are not used: hole" in verdict.notes
+def _with_campaign(few, *cases):
+    """Return the parameters of a test: a few cases for every run, the others for the campaign."""
+    return [*few, *(pytest.param(*case, marks=pytest.mark.campaign) for case in cases)]
+
+
+@pytest.mark.parametrize(("text", "body", "words"), _with_campaign(
+    [("I_xx = m (3 R^2 + 4 L^2)/12", "solid cylinder about the centre of a hole", "hole"),
+     ("I = m r^2/2", "half cylinder", "half")],
+    ("I = 2/5 m r^2", "thin sphere", "thin"),
+    ("I = m L^2/12", "rod of variable density", "variable"),
+    ("I = m r^2/2", "disk with a hole of radius r/2", "hole"),
+    ("I = m L^2/12", "rod about its quarter point", "quarter point"),
+    ("I = m r^2/2", "disk about an axis through a hole", "hole"),
+    ("I = m r^2/2", "cylinder of radius 2 m", "radius 2"),
+    ("a = 5/7 g sin θ", "sphere that rolls up a slope", "up slope"),
+    ("I = m (a^2 + b^2)/4", "elliptical plate of semi-axes a, b", "elliptical"),
+))  # fmt: skip
+def test_words_about_a_body_that_are_not_understood_leave_a_claim_open(text, body, words):
+    verdict = symrot.check(text, body=body)
+    assert verdict.verdict == "definition"
+    assert "these words are not understood" in verdict.reason and words in verdict.reason
+
+
+@pytest.mark.parametrize(("text", "body", "verdict", "repair"), _with_campaign(
+    [("I = m d^2/8", "solid cylinder of diameter d", "recognised", ""),
+     ("I = m d^2/2", "solid cylinder of diameter d", "doubtful", "I = m*d^2/8"),
+     ("I = m L^2/3", "rod of length 2L", "recognised", ""),
+     ("I = m L^2/12", "rod of length 2L about its centre", "false", "I = m*L^2/3")],
+    ("I = 2/3 m a^2", "cube of side 2a", "recognised", ""),
+    ("I = 1/6 m a^2", "cube of side 2a", "doubtful", ""),
+    ("I_zz = m (a^2 + b^2)/3", "box of sides 2a, 2b, 2c about its centre", "true", ""),
+    ("I_zz = m (a^2 + b^2)/12", "box of sides 2a, 2b, 2c about its centre", "false", ""),
+    ("I = 2/5 m R^2/4", "sphere of radius R/2 about its centre", "true", ""),
+    ("I = 2/5 m R^2", "sphere of radius R/2 about its centre", "false", "I = m*R^2/10"),
+    ("I = m (d^2 + D^2)/8", "hollow cylinder with inner diameter d and outer diameter D", "recognised", ""),
+    ("I = 2/3 m r^2", "hollow sphere", "true", ""),
+    ("I = 2/5 m r^2", "hollow sphere of radius r about a diameter", "false", ""),
+    ("I = m r^2", "thin-walled cylinder of radius r about its axis", "true", ""),
+    ("I = m (a^2 + b^2)/12", "plate of length a and width b about its centre", "true", ""),
+    ("I = m L^2/3", "rod of length L hinged at one end", "true", ""),
+    ("I_zz = m r^2/2", "solid cylinder of radius r about the z axis", "true", ""),
+    ("I = m r^2", "hollow cylinder of radius r", "recognised", ""),
+))  # fmt: skip
+def test_dimensions_in_words_have_their_factors(text, body, verdict, repair):
+    checked = symrot.check(text, body=body)
+    assert checked.verdict == verdict
+    assert not repair or checked.repairs[0].text == repair
+
+
+@pytest.mark.parametrize(("text", "body", "verdict"), _with_campaign(
+    [("I = 5/4 m r^2", "disk about a tangent", "true"),
+     ("I = 3/2 m r^2", "ring about a tangent", "true"),
+     ("I = 3/2 m r^2", "disk about a tangent", "recognised"),
+     ("I = m r^2/4", "disk about a tangent", "false"),
+     ("I = 3/2 m r^2", "disk about a tangent perpendicular to its plane", "true"),
+     ("I = 5/4 m r^2", "disk about a tangent perpendicular to its plane", "false"),
+     ("I = 7/5 m r^2", "sphere about a tangent", "true")],
+    ("I = 2/5 m r^2", "sphere about a tangent", "false"),
+    ("I = 2/5 m r^2", "sphere about a point of its surface", "false"),
+    ("I = m h^2/6", "triangular plate about its base", "true"),
+    ("I = 2/3 m a^2", "cube about an edge", "true"),
+    ("I = m a^2/6", "cube about an edge", "false"),
+    ("I = m b^2/3", "plate of sides a, b about an edge", "true"),
+    ("I = m r^2/4", "disk about a diameter", "true"),
+    ("I = m r^2/2", "disk about a diameter", "false"),
+    ("I = m r^2", "ring about a diameter", "false"),
+    ("I = m r^2/2", "ring about a diameter", "true"),
+    ("I = 2/5 m r^2", "sphere about a diameter", "true"),
+    ("I = m r^2/2", "solid cylinder of radius r about a diameter", "false"),
+    ("I = m r^2/2", "disk about its axis", "true"),
+    ("I = m r^2/4", "disk about its axis", "false"),
+    ("I = m L^2/12", "rod about an axis through its centre perpendicular to it", "true"),
+    ("I = m L^2/3", "rod about an axis through one end perpendicular to the rod", "true"),
+    ("I = m r^2/2", "disk about an axis through its centre perpendicular to its plane", "true"),
+    ("I = m r^2/4", "disk about an axis through its centre perpendicular to its plane", "false"),
+    ("k = r/√2", "solid cylinder", "recognised"), ("k = r/√2", "disk about a diameter", "doubtful"), ("I = 2 m r^2", "dumbbell", "definition"),
+    ("I = m L^2/12", "rod about the pivot", "definition"),
+    ("a = 2/3 g sin θ", "solid cylinder that rolls down a slope", "true"),
+))  # fmt: skip
+def test_a_line_as_an_axis_chooses_the_moments_about_it(text, body, verdict):
+    assert symrot.check(text, body=body).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "meaning", "verdict"), _with_campaign(
+    [("I = m r^2/4", "moment of inertia about a diameter", "true"),
+     ("I = m r^2/2", "axial moment of inertia", "recognised"),
+     ("I = m r^2/2", "moment of inertia about a diameter", "false")],
+    ("I = m r^2/4", "axial moment of inertia", "doubtful"),
+    ("I = m r^2/2", "moment of inertia about an edge", "definition"),
+    ("I = m r^2/2", "moment of inertia about an axis in the plane", "definition"),
+    ("I = m r^2/4", "transverse moment of inertia", "recognised"),
+    ("I = m r^2/2", "transverse moment of inertia", "doubtful"),
+))  # fmt: skip
+def test_the_axis_in_the_meaning_of_a_moment_counts(text, meaning, verdict):
+    """A disk has no edge; nothing says through which point an axis in its plane, or an axial one, goes."""
+    assert symrot.check(text, body="disk", where=[f"I = {meaning}"]).verdict == verdict
+
+
+def test_a_gyroscope_is_a_fast_top():
+    assert symrot.check("Ω = m g l/(I ω)", body="gyroscope").verdict == "recognised"
+
+
+def test_the_height_of_a_fall_is_no_dimension_of_the_body():
+    assert symrot.check("v² = 4/3 g h", body="cylinder that rolls from a height h").verdict == "true"
+
+
+def test_lower_case_letters_of_a_sequence_are_noted():
+    verdict = symrot.check("ω_x = φ' - ψ' sin θ", sequence="zyx", frame="body")
+    assert "zyx in lower case is about fixed axes; for moving axes write ZYX" in verdict.notes
 
 
 def test_a_letter_that_is_no_usual_one_is_never_called_false():
@@ -224,3 +327,9 @@ def test_the_moments_of_a_body_are_true_for_this_body_alone(kind):
         assert symrot.check(claim, body=f"{kind.title} about {match[1]}").verdict == "true", known
         other = "torus" if kind.title != "torus" else "disk"
         assert symrot.check(claim, body=f"{other} about its centre of mass", repair=False).verdict != "true", known
+
+
+def test_letters_with_other_meanings_accuse_nobody():
+    """The vector form of a gyroscope's moment is correct, whatever words are used for its rates."""
+    claim = r"\mathbf M = I\,\boldsymbol\Omega\times\mathbf p"
+    assert symrot.check(claim, where=["p = spin", "Omega = precession rate"]).verdict in ("recognised", "definition")

@@ -199,3 +199,13 @@ def test_a_square_over_a_root_is_known_not_to_be_negative():
 ])  # fmt: skip
 def test_a_hypothesis_may_define_a_matrix_and_so_its_entries(claim, given, verdict):
     assert symrot.check(claim, assume=[given]).verdict == verdict
+
+
+@pytest.mark.parametrize(("claim", "hypothesis", "context"), [
+    ("I = m L^2/3", "L == 1", {"body": "rod about its centre"}),
+    ("I_zz = m a^2/6", "a == b", {"body": "box of sides a, b, c"}),
+    ("ω_3 = φ' + ψ'", "theta == 0", {"sequence": "ZXZ", "frame": "body"}),
+])  # fmt: skip
+def test_a_formula_that_hypotheses_may_make_right_is_not_accused(claim, hypothesis, context):
+    verdict = symrot.check(claim, assume=[hypothesis], **context)
+    assert verdict.verdict in ("definition", "recognised", "true")

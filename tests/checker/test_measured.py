@@ -15,7 +15,13 @@ from symrot.errors import InputError
     r"\SI{1500}{rpm} = \SI{157.08}{rad/s}", r"1500\,\mathrm{rpm} = 157.08\,\mathrm{rad/s}", "6 N * 2 m = 12 J",
     "2 kg * 3 m/s^2 = 6 N", "1/2 * 2 kg * (3 m/s)^2 = 9 J", "100 rpm + 20 rad/s = 30.47 rad/s", "1 rev = 2 pi rad",
     "1e30 km = 1e33 m", "1 um = 1e-6 m", "1 h = 3600 s", r"90^\circ = \frac{\pi}{2}",
-    "1 lbf = 4.448 N",
+    "1 lbf = 4.448 N", "9.81 m/s² = 32.2 ft/s²", "9.82 m/s^2 = 32.2 ft/s^2", "1 rad = 57.3°", "1 rpm = 6°/s",
+    "√(9.81 m/s² / 1 m) = 3.132 rad/s", "2π√(1 m/9.81 m/s²) = 2.006 s", "10 m / 2 s = 5 m/s", "1/2 kg = 500 g",
+    "(3 + 4)/2 s = 3.5 s", "(2 + 3) m = 5 m", "3×10^8 m/s = 300000 km/s", "1 kg·m²/s² = 1 J", "1 Hz = 1/s",
+    "3000 rpm = 50 Hz", "1 Hz = 2π rad/s", "1 g = 9.81 m/s^2", "5 g = 0.005 kg", "60 mph = 88 ft/s", "1 hp = 745.7 W",
+    "1 kWh = 3.6 MJ", "1 mile = 5280 ft", "1 atm = 101325 Pa", "2 * 3 rad/s = 6 rad/s", "asin(1) = 90 deg",
+    "20 N m / 4 kg m^2 = 5 rad/s^2", "20 N m / (4 kg m^2) = 5 rad/s^2",
+    "1 lb ft = 1.356 N m", "100 lb = 444.8 N", "1 lb = 0.4536 kg", "asin(0.6) = 36.87°",
 ])  # fmt: skip
 def test_numbers_with_units_are_compared_in_si_units(claim):
     assert symrot.check(claim).verdict == "true"
@@ -28,6 +34,10 @@ def test_numbers_with_units_are_compared_in_si_units(claim):
         ("3 ft = 0.9145 m", "3 ft = 0.9144 m"),
         ("0.524 rad = 30 deg", None),
         ("157.08 rad/s = 1501 rpm", "157.18 rad/s = 1501 rpm"),
+        ("1 rad = 57.4°", "1 rad = 57.3°"),
+        ("I = 1/12 * 3 kg * (2 m)^2 = 2 kg m^2", "I = 1/12 * 3 kg * (2 m)^2 = 1 kg m^2"),
+        ("6 N * 2 m = 13 J", "6 N * 2 m = 12 J"),
+        ("2π√(1 m/9.81 m/s²) = 2.016 s", "2π√(1 m/9.81 m/s²) = 2.006 s"),
     ],
 )
 def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
@@ -50,9 +60,42 @@ def test_a_sum_of_different_units_is_refused():
         symrot.check("3 m + 2 s = 5 m")
 
 
-@pytest.mark.parametrize("claim", ["T = 2 m g", "F = 3 m a", "2*m == 2*m", "x = 2 y", "T = 1/2 m v^2", "rpm = n"])
+@pytest.mark.parametrize(
+    "claim", ["T = 2 m g", "F = 3 m a", "2*m == 2*m", "x = 2 y", "T = 1/2 m v^2", "rpm = n", "T = 3 mg"]
+)
 def test_letters_of_a_formula_are_no_units(claim):
     assert measured_text(claim) is None
+
+
+def test_a_hertz_is_a_rotation_per_second_next_to_an_angle():
+    verdict = symrot.check("1 Hz = 1 rad/s")
+    assert verdict.verdict == "false"
+    assert "with the hertz as one per second, and the radian as 1, it is true" in verdict.notes
+
+
+def test_g_next_to_an_acceleration_is_no_gram_and_has_no_exact_value():
+    verdict = symrot.check("2 g = 19.62 m/s^2")
+    assert verdict.verdict == "definition"
+    assert "g is an acceleration here, and its value is not stated" in verdict.reason
+    assert symrot.check("5 g = 0.05 kg").verdict == "false"
+
+
+@pytest.mark.parametrize("claim", [
+    "1/12 m L^2 = 1 kg m^2", "F = m a = 2 kg * 3 m/s^2 = 6 N", "v^2/r = 9.81 m/s^2", "2 v^2/r + a = 9.81 m/s^2",
+    r"\frac{1}{12} m L^2 = 1\,\mathrm{kg}\,\mathrm{m}^2",
+])  # fmt: skip
+def test_an_equation_of_letters_and_a_number_with_a_unit_is_never_false(claim):
+    assert symrot.check(claim).verdict == "definition"
+
+
+def test_the_numbers_at_the_end_of_a_chain_are_decided():
+    verdict = symrot.check("F = m a = 2 kg * 3 m/s^2 = 7 N")
+    assert (verdict.verdict, verdict.repairs[0].text) == ("false", "2 kg * 3 m/s^2 = 6 N")
+
+
+def test_a_temperature_in_degrees_is_refused():
+    with pytest.raises(InputError, match="expected units of mechanics, got '°C'; write a temperature in K"):
+        symrot.check("20°C = 293.15 K")
 
 
 def test_a_name_may_have_a_value_with_units():

@@ -121,3 +121,9 @@ def test_the_campaign_compares_diagnoses_and_repairs_with_the_corpus():
     assert offers(("x = 1", "I_1*w' = M"), "w' = M/I_1")
     assert not offers(("T = I*omega^2",), r"T = \frac12 I\omega^2")
     assert not offers((), "T = 1")
+
+
+@pytest.mark.parametrize("claim", ["I_zz = π ρ h D^4/32", "I = m(a²+b²)/6", "I = m D²/2", "I = m a²/20"])
+def test_a_moment_of_an_unknown_body_is_not_accused(claim):
+    """The moments of a cylinder by its diameter, of a triangular plate about its right corner, of a tetrahedron."""
+    assert symrot.check(claim).verdict == "definition"

@@ -71,3 +71,16 @@ def test_a_condition_follows_only_from_what_grants_it():
     assert not follow([(x * y, ">= 0")], [(x, ">= 0")])
     assert not follow([(x, "> 0")], [(x, ">= 0")])
     assert not follow([(x, ">= 0")], [(x**2 * y, ">= 0"), (y, "> 0")])
+
+
+@pytest.mark.parametrize(("claim", "condition"), [
+    ("sqrt(x**2*y**2) == x*y", "x*y >= 0"), ("2*atan(x) == asin(2*x/(1+x**2))", "-1 <= x <= 1"),
+    ("sqrt((x**2-1)**2) == -(x**2-1)", "-1 <= x <= 1"), ("abs(x**2-1) == x**2-1", "abs(x) >= 1"),
+])  # fmt: skip
+def test_a_condition_excludes_no_point_where_both_sides_are_equal(claim, condition):
+    verdict = symrot.check(claim, repair=False)
+    assert (verdict.verdict, verdict.requires, verdict.conditions) == ("conditional", (condition,), (condition,))
+
+
+def test_a_condition_excludes_the_points_where_a_side_has_no_value():
+    assert symrot.check("sqrt(x**2*y**2)/y == x", repair=False).conditions == ("x*y >= 0", "y != 0")

@@ -82,13 +82,15 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether a side has the time derivative of a formula, and the other side is 0 or has further letters.
+    """Return whether a rate, or a product with one, is zero, or the rate of a product is given by another letter.
 
-    An example is ``(I w^2/2)' = I w alpha``, with the further letter alpha.
+    Examples are ``(I w)' = 0``, ``C w_3' = 0`` and ``(I w^2/2)' = I w alpha``.
     """
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
+    if other == number(0) and side.kind == "product" and any(map(_is_rate, side.args)):
+        return True
     return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
 
 

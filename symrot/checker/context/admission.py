@@ -6,8 +6,9 @@ The place of an axis is the point through which it passes; the titles of places 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, Meaning
-from symrot.checker.context.quantities import PLACES, plain_words
+from symrot.checker.context.quantities import LINES, PLACES, RIM, SURFACE, plain_words
 from symrot.conventions import SEQUENCES
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "admits_name",
     "guesses",
     "has_order",
+    "is_at_open_place",
     "is_component",
     "is_place",
     "misfits",
@@ -81,12 +83,52 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     for body in (context.body, meaning.body if meaning else None):
         if body is not None and not body.has(name):
             yield "of another body"
+    is_stated = any(other.quantity.title == GYRATION for other in context.meanings)
+    if context.body and context.body.kind.shape and name.endswith(f"from the {GYRATION}") and not is_stated:
+        yield "with a radius of gyration"  # r is the radius of the body
     own_place = (meaning.place if meaning else "") or context.place
-    if own_place and place and place != own_place and place_exists(own_place):
+    if own_place in LINES and (" of a " in name or place):
+        yield from () if _is_along(name, own_place) else (place or "about another axis",)
+    elif own_place and place and place != own_place and place_exists(own_place):
         yield place
+    elif own_place == place and _is_radial(name, quantity):
+        yield "about an axis through the centre of mass"
+    if meaning is not None and (line := DIRECTIONS.get(meaning.quantity.title)) and not _has_axes(name, line):
+        yield "for another axis"
     phrases = meaning.quantity.formulas if meaning is not None else ()
     if phrases and not any(phrase in name for phrase in phrases):
         yield "for another quantity"
+
+
+GYRATION = "radius of gyration"
+DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
+"""Title of a quantity -> the axes of a round body that it is about."""
+
+
+def _has_axes(name: str, axes: str) -> bool:
+    """Return whether the formula with a name is about one of some axes, if its body is round or a rod."""
+    _, bodies = LINES["about a transverse axis through the centre"]
+    axis = re.search(r", ([xyz]) axis", name)
+    return axis is None or not bodies_of_formula(name) & {*bodies} or axis[1] in axes
+
+
+def _is_along(name: str, line: str) -> bool:
+    """Return whether the formula with a name is about a line, such as a diameter of its body."""
+    _, bodies = LINES[line]
+    axis = re.search(r", ([xyz]) axis", name)
+    return any(
+        place_of(name) == place and (axis is None or axis[1] in axes)
+        for body, (place, axes) in bodies.items()
+        if body in bodies_of_formula(name)
+    )
+
+
+def _is_radial(name: str, quantity: str) -> bool:
+    """Return whether the formula with a name is about a radius through a point of the rim or of the surface.
+
+    Such an axis is hardly meant, unless the name of the quantity says which axis it is.
+    """
+    return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
 
 def is_component(name: str, quantity: str) -> bool:
@@ -104,6 +146,15 @@ def is_component(name: str, quantity: str) -> bool:
 def place_exists(place: str) -> bool:
     """Return whether the names of some derived formulas contain the place with this title."""
     return any(title == place and phrases for title, _, phrases in PLACES)
+
+
+def is_at_open_place(context: Context, name: str) -> bool:
+    """Return whether a formula is for one place, while the context says a pivot, which may be at any place."""
+    places = {context.place, *(meaning.place for meaning in context.meanings)}
+    return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
+
+
+OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
@@ -127,6 +178,8 @@ def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterab
             return False
     if context.body is None:
         return True
+    if context.body.factors:
+        return False  # no letter of the claim is a symbol of a derived formula
     own = dict(pairs)
     inverse = {new: known for known, new in pairs}
     return all(
@@ -190,6 +243,8 @@ def guesses(context: Context, name: str, stated: str) -> list[str]:
             words += [body.place]
     if context.sequence:
         words += ["intrinsic extrinsic", same_rotation(context.sequence)]
+    if context.place in LINES or any(meaning.place in LINES for meaning in context.meanings):
+        words.append(place_of(name))
     own = {word for text in words for word in _tokens(text)}
     own |= {word for title, _, phrases in PLACES if title in words for phrase in phrases for word in _tokens(phrase)}
     frame = frame_of(name)
@@ -200,6 +255,7 @@ def guesses(context: Context, name: str, stated: str) -> list[str]:
     words_of_place = {word for title, _, phrases in PLACES if title == place for p in phrases for word in _tokens(p)}
     stated_places = {context.place, *(meaning.place for meaning in context.meanings)}
     stated_places |= {meaning.body.place for meaning in context.meanings if meaning.body}
+    stated_places |= {place} if stated_places & {*LINES} else set()
     if place and place not in stated_places:
         open_words = [*(word for word in open_words if word not in words_of_place), place]
     return [*open_words, *([f"in the {frame} frame"] if frame and frame not in stated_frames else [])]

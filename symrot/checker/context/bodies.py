@@ -3,10 +3,11 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 
 from symrot.checker.context.quantities import place_of_words, plain_words, unused_words
-from symrot.inertia.shapes import SHAPES
+from symrot.inertia.shapes import SHAPES, Dimension
 
 __all__ = ["BODIES", "Body", "Kind", "bodies_of_formula", "body_of_words"]
 
@@ -24,13 +25,16 @@ class Kind:
     formulas : tuple of str
         The phrases for it in the names of derived formulas.
     shape : str
-        The shape of :mod:`symrot.inertia.shapes`, or an empty text.
+        The shape of :mod:`symrot.inertia.shapes` that has its dimensions, or an empty text.
+    thin : tuple (str, str) or empty
+        The phrase and the shape of the body with a thin wall, which is meant as well if only one radius is stated.
     """
 
     title: str
     synonyms: tuple[str, ...]
     formulas: tuple[str, ...]
     shape: str = ""
+    thin: tuple[str, str] | tuple[()] = ()
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
@@ -50,9 +54,14 @@ class Body:
     letters : mapping
         Symbol of the derived formulas -> letter in the claim, such as ``{"R": "r"}`` for "of radius r".
     place : str
-        The title of a place of :data:`symrot.checker.context.quantities.PLACES`, such as "about an end"; or empty.
+        The title of a place of :data:`symrot.checker.context.quantities.PLACES`, such as "about an end", or of a line
+        of :data:`symrot.checker.context.quantities.LINES`; or empty.
     rest : str
-        The words that symrot does not use.
+        The words that say something about the body that symrot does not know.
+    factors : mapping
+        Symbol -> the dimension in units of its letter, if it is not 1: ``{"R": 1/2}`` for "of diameter d".
+    axes : str
+        The axes that the words allow, such as ``"z"`` for "perpendicular to its plane"; empty for all.
     """
 
     kind: Kind
@@ -60,11 +69,30 @@ class Body:
     letters: Mapping[str, str] = field(default_factory=dict)
     place: str = ""
     rest: str = ""
+    factors: Mapping[str, Fraction] = field(default_factory=dict)
+    axes: str = ""
+
+    @property
+    def formulas(self) -> tuple[str, ...]:
+        """The phrases for the body in the names of derived formulas, by the radii that are stated."""
+        if not self.kind.thin:
+            return self.kind.formulas
+        thin = self.kind.thin[0]
+        if self.letters.keys() & {"R_1", "R_2"}:
+            return self.kind.formulas
+        return (thin,) if "R" in self.letters else (*self.kind.formulas, thin)
+
+    @property
+    def obscure(self) -> str:
+        """The words that may change the moments of inertia of the body in a way that symrot does not know."""
+        return self.rest if self.kind.shape else ""
 
     def has(self, name: str) -> bool:
         """Return whether a derived formula, by its name, is one for this body or for any body."""
         phrases = bodies_of_formula(name)
-        own = {phrase for phrase in phrases if phrase in self.kind.formulas}
+        own = {phrase for phrase in phrases if phrase in self.formulas}
+        if self.axes and own and (axis := re.search(r", ([xyz]) axis", name)) and axis[1] not in self.axes:
+            return False
         if phrases - own and not (own and ", or of " in name):
             return False
         if self.motion == GENERAL:
@@ -82,19 +110,24 @@ MOTIONS = {"rolls": "rolls", "rolls down a slope": "down a slope", "rolls from a
 TOPS = ("symmetric top", "heavy top", "fast top", "of a top", "on a top", "steady precession", "sleeping top")
 
 BODIES: tuple[Kind, ...] = (
-    Kind("solid cylinder", ("cylinder", "homogeneous cylinder", "circular cylinder"), ("a cylinder",), "cylinder"),
-    Kind("hollow cylinder", ("thick tube", "annular cylinder"), ("a hollow cylinder",), "hollow_cylinder"),
-    Kind("thin tube", ("cylindrical shell", "thin hollow cylinder"), ("a thin tube",)),
-    Kind("annulus", ("annular disk",), ("a annulus",)),
-    Kind("conical shell", ("hollow cone",), ("a conical shell",)),
+    Kind("solid cylinder", ("cylinder", "homogeneous cylinder", "circular cylinder"),
+         ("a cylinder", "a cylinder that rolls"), "cylinder"),
+    Kind("hollow cylinder", ("thick tube", "annular cylinder", "tube", "pipe"), ("a hollow cylinder",),
+         "hollow_cylinder", ("a thin tube", "cylinder")),
+    Kind("thin tube", ("cylindrical shell", "thin hollow cylinder", "thin-walled cylinder", "thin-walled tube",
+                       "thin-walled hollow cylinder", "thin cylindrical shell"), ("a thin tube",), "cylinder"),
+    Kind("annulus", ("annular disk",), ("a annulus",), "hollow_cylinder"),
+    Kind("conical shell", ("hollow cone",), ("a conical shell",), "cone"),
     Kind("thin rod", ("rod", "slender rod", "bar", "thin bar", "slender bar"), ("a rod",), "rod"),
     Kind("box", ("solid box", "block", "cuboid", "brick", "rectangular prism", "parallelepiped"), ("a box",), "box"),
     Kind("cube", ("solid cube",), ("a box",), "box"),
-    Kind("plate", ("thin plate", "rectangular plate"), ("a plate", "a flat body"), "plate"),
+    Kind("plate", ("thin plate", "rectangular plate", "thin rectangular plate"), ("a plate", "a flat body"), "plate"),
     Kind("flat body", ("lamina", "plane body"), ("a flat body",)),
     Kind("solid sphere", ("sphere", "homogeneous sphere", "ball"), ("a sphere",), "sphere"),
-    Kind("spherical shell", ("thin spherical shell", "hollow ball"), ("a spherical shell",), "spherical_shell"),
-    Kind("hollow sphere", ("thick spherical shell",), ("a hollow sphere",), "hollow_sphere"),
+    Kind("spherical shell", ("thin spherical shell", "hollow ball", "thin-walled sphere", "thin-walled hollow sphere",
+                             "thin hollow sphere"), ("a spherical shell",), "spherical_shell"),
+    Kind("hollow sphere", ("thick spherical shell",), ("a hollow sphere",), "hollow_sphere",
+         ("a spherical shell", "spherical_shell")),
     Kind("hemisphere", ("solid hemisphere", "half ball"), ("a hemisphere",), "hemisphere"),
     Kind("solid cone", ("cone", "homogeneous cone", "circular cone"), ("a cone",), "cone"),
     Kind("frustum", ("frustum of a cone", "truncated cone"), ("a frustum",), "frustum"),
@@ -121,7 +154,8 @@ BODIES: tuple[Kind, ...] = (
          ("a torsional pendulum", "a torsional spring")),
     Kind("two masses on a pulley", ("atwood's machine", "atwood machine"), ("two masses on a pulley",)),
     Kind("aircraft", ("body with a plane of symmetry",), ("a body with a plane of symmetry",)),
-    Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"), ("a level axle", "steady precession", "of a top")),
+    Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
+         ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
 """Every body that words can name; the longest phrase in a text decides which one it is. The phrases for an ellipsoid
 and other words with a vowel have the article "a", as names are compared without "an"."""
@@ -142,13 +176,28 @@ _MOTION_WORDS = (
 )  # fmt: skip
 
 _LETTER = r"[A-Za-z](?:_?[A-Za-z0-9])?'?"
+_TERM = rf"(?!\d*[cmk]?m\b)\d*{_LETTER}(?:/\d+)?"
 _NOUNS = {
     "radius": ("base radius", "radius"), "length": ("length", "height"), "height": ("height", "length"),
     "inner": ("inner radius",), "outer": ("outer radius",), "ring": ("ring radius", "radius"),
     "tube": ("tube radius",), "base": ("base",), "apex": ("apex",), "bottom": ("bottom radius",),
-    "top": ("top radius",),
+    "top": ("top radius",), "a": ("length",), "b": ("width", "breadth"), "c": ("height", "thickness", "depth"),
 }  # fmt: skip
-"""Name of a dimension of a shape -> the nouns for it, as in "of height h"."""
+"""Name of a dimension of a shape -> the nouns for it, as in "of height h"; a diameter has "diameter" for "radius"."""
+
+_HARMLESS = re.compile(
+    r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
+    r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]|in plane (of )?x,?( and)? y"
+    r"|free to rotate|hinged|pivoted)(?![\w-])"
+)
+"""Words about a body that change none of its formulas."""
+
+_ACROSS = re.compile(
+    r"(axis |line )?(that is )?(perpendicular|normal) to (it|plane|disk|ring|hoop|plate|rod|bar|length|surface|face)\b"
+)
+_HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
+_FLAT = ("disk", "ring", "annulus", "plate", "triangular plate", "flat body")
+ROD = "thin rod"
 
 
 def bodies_of_formula(name: str) -> set[str]:
@@ -183,38 +232,64 @@ def body_of_words(words: str) -> Body | None:
         if re.search(pattern, rest):
             motion, rest = name, re.sub(pattern, " ", rest, count=1)
             break
-    letters, rest = _letters(kind, words, rest)
-    place, rest = place_of_words(rest)
-    return Body(kind, motion, letters, place, unused_words(rest))
+    letters, factors, rest = _letters(kind, _HEIGHT_OF_FALL.sub(" ", words), rest)
+    axes = ""
+    if kind.title in (*_FLAT, ROD) and _ACROSS.search(rest):
+        axes, rest = "xy" if kind.title == ROD else "z", _ACROSS.sub(" ", rest, count=1)
+    own = Body(kind, motion, letters).formulas
+    place, rest = place_of_words(" ".join(rest.split()), own)
+    if axes and re.fullmatch(r"(.* )?about", " ".join(rest.split())):
+        rest = rest.strip().removesuffix("about")
+    return Body(kind, motion, letters, place, unused_words(_HARMLESS.sub(" ", rest)), factors, axes)
 
 
-def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], str]:
-    """Return the letters of the dimensions and moments of a body, and the words without them.
+def _scaled(term: str) -> tuple[str, Fraction]:
+    """Return the letter of a dimension such as 2a or d/2, and its factor."""
+    match = re.fullmatch(rf"(\d+)?({_LETTER})(?:/(\d+))?", term)
+    assert match is not None
+    return match[2], Fraction(int(match[1] or 1), int(match[3] or 1))
+
+
+def _dimensions(kind: Kind) -> list[Dimension]:
+    """Return the dimensions of a kind of body, and those of the body with a thin wall."""
+    shapes = [name for name in (kind.shape, *kind.thin[1:]) if name]
+    return [dimension for name in shapes for dimension in SHAPES[name].dimensions]
+
+
+def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[str, Fraction], str]:
+    """Return the letters of the dimensions and moments of a body, their factors, and the words without them.
 
     ``words`` are in the upper and lower case of the input, ``rest`` in lower case.
     """
     letters: dict[str, str] = {}
-    dimensions = SHAPES[kind.shape].dimensions if kind.shape else ()
+    factors: dict[str, Fraction] = {}
+    dimensions = _dimensions(kind)
     for dimension in dimensions:
-        for noun in _NOUNS.get(dimension.name, ()):
+        nouns = [(noun, Fraction(1)) for noun in _NOUNS.get(dimension.name, ())]
+        nouns += [(noun.replace("radius", "diameter"), Fraction(1, 2)) for noun, _ in nouns if "radius" in noun]
+        for noun, unit in nouns:
             pattern = (
-                rf"(?<!base )(?<!inner )(?<!outer )(?<!tube )\b(?:of |with |and )?(?:a )?{noun} ({_LETTER})(?![\w'])"
+                rf"(?<!base )(?<!inner )(?<!outer )(?<!tube )\b(?:of |with |and )?(?:a )?{noun} ({_TERM})(?![\w'/])"
             )
             if (match := re.search(pattern, words)) and dimension.symbol not in letters:
-                if match[1] in letters.values():
+                letter, factor = _scaled(match[1])
+                if letter in letters.values():
                     continue
-                letters[dimension.symbol] = match[1]
+                letters[dimension.symbol], factors[dimension.symbol] = letter, factor * unit
                 rest = re.sub(pattern, " ", rest, count=1, flags=re.IGNORECASE)
-    if match := re.search(rf"\b(?:of |with )?(?:sides?|edges?|semi-?axes) ((?:{_LETTER}(?:,? and |, ?)?)+)", words):
-        names = re.findall(_LETTER, match[1].replace(" and ", ","))
+    sides = rf"\b(?:of |with )?(?:sides?|edges?|semi-?axes)(?: lengths?)? ((?:{_TERM}(?![\w'/])(?:,? and |, ?)?)+)"
+    if match := re.search(sides, words):
+        terms = [_scaled(term) for term in re.findall(_TERM, re.sub(r",? and |, ?", ";", match[1]))]
         if kind.title == "cube":
-            names *= 3
-        symbols = [dimension.symbol for dimension in dimensions]
-        letters |= dict(zip(symbols, names, strict=False))
+            terms *= 3
+        for dimension, (letter, factor) in zip(dimensions, terms, strict=False):
+            letters[dimension.symbol], factors[dimension.symbol] = letter, factor
         rest = rest.replace(match[0].lower().strip(), " ", 1)
         rest = re.sub(r"(along|in) x, y,? (and )?z|along x( and|,)? .? ?along y", " ", rest)
     if match := re.search(r"\bwith (?:the )?moments ([\w']+), ?([\w']+),?(?: and)? ?([\w']+)", words):
         first, second, third = match.groups()
         letters |= {"A": first, "C": third} if first == second else {"A": first, "B": second, "C": third}
         rest = re.sub(r"with (the )?moments? [\w']+, ?[\w']+,?( and)? ?[\w']+", " ", rest)
-    return letters, rest
+    if not dimensions:  # the derived formulas have no dimensions of such a body
+        rest = re.sub(rf"\b(of |with |and )?(radius|length) {_LETTER}(?![\w'/])", " ", rest, flags=re.IGNORECASE)
+    return letters, {symbol: factor for symbol, factor in factors.items() if factor != 1}, rest

@@ -7,12 +7,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from fractions import Fraction
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.context.bodies import BODIES, Body, body_of_words
 from symrot.checker.context.quantities import (
     AMBIGUOUS,
+    LINES,
     QUANTITIES,
     Quantity,
     place_of_words,
@@ -130,6 +132,16 @@ class Context:
         own = [meaning.rest for meaning in self.meanings] + ([self.body.rest] if self.body else [])
         return tuple(words for words in own if words)
 
+    @property
+    def obscure(self) -> str:
+        """The words about the body, or about the axis of a quantity, that are not understood; often there are none."""
+        own = [self.body.obscure] if self.body else []
+        for meaning in self.meanings:
+            own += [meaning.body.obscure] if meaning.body else []
+            own += [meaning.rest] if _OF_AXES.search(meaning.rest) else []
+            own += [meaning.place] if self.body and not _has_line(self.body, meaning.place) else []
+        return " ".join(words for words in own if words)
+
     def fits(self, names: set[str]) -> bool:
         """Return whether every name with a meaning is one of the ``names`` of a text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
@@ -173,6 +185,15 @@ class Context:
 
 NO_CONTEXT = Context()
 
+_OF_AXES = re.compile(
+    r"\b(about|through|perpendicular|normal|parallel|vertical|horizontal|edge|tangent|diameter|plane|inclined)\b"
+)
+
+
+def _has_line(body: Body, line: str) -> bool:
+    """Return whether a body has a line, such as a diameter, if a place is one."""
+    return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
+
 
 def _described(meaning: Meaning) -> str:
     body = f"of a {_described_body(meaning.body)}" if meaning.body else ""
@@ -181,10 +202,16 @@ def _described(meaning: Meaning) -> str:
 
 
 def _described_body(body: Body) -> str:
-    letters = ", ".join(f"{letter} for {symbol}" for symbol, letter in body.letters.items())
+    letters = ", ".join(f"{_scaled(body, symbol)} for {symbol}" for symbol in body.letters)
     motion = f" {'in general motion' if body.motion == 'general' else f'that {body.motion}'}" if body.motion else ""
     place = f" {body.place}" if body.place else ""
     return f"{body.kind.title}{motion}{place}" + (f" (with {letters})" if letters else "")
+
+
+def _scaled(body: Body, symbol: str) -> str:
+    """Return a dimension of a body with its factor, such as 2*L or d/2."""
+    above, below = body.factors.get(symbol, Fraction(1)).as_integer_ratio()
+    return f"{above}*" * (above != 1) + body.letters[symbol] + f"/{below}" * (below != 1)
 
 
 def read_context(
@@ -313,13 +340,17 @@ def _frame_in(words: str) -> tuple[str, str]:
     return "", words
 
 
+_NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
+"""What may not follow a phrase, by whether it ends with "axis": an axis in the plane is not the axis of a body."""
+
+
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
     """Return the quantity that words name, and the phrase that names it."""
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
         for quantity in QUANTITIES
         for phrase in quantity.phrases
-        if (match := re.search(rf"(?<![\w-]){re.escape(phrase)}(?![\w-])", plain))
+        if (match := re.search(rf"(?<![\w-]){re.escape(phrase)}(?![\w-]){_NO_AXIS_OF[phrase.endswith('axis')]}", plain))
     ]
     if phrases:
         start, _, phrase, quantity = min(phrases, key=lambda entry: entry[:2])

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
-from sympy import Expr, Function, Symbol
+from sympy import Expr, Function, Rational, Symbol
 
 from symrot import symbols
 from symrot.checker.claim.atoms import atoms_of
@@ -29,6 +29,7 @@ from symrot.checker.context.admission import (
     admits_name,
     guesses,
     has_order,
+    is_at_open_place,
     is_component,
     is_place,
     misfits,
@@ -113,10 +114,26 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If symrot
     does not use some words of the context, the claim is called neither true nor false, and a note lists these words.
     """
+    verdict = _with_all_words(claim, named, verdict)
+    sequence = claim.context.sequence
+    if verdict.verdict not in ("false", "doubtful", "definition") or not sequence.islower():
+        return verdict
+    note = f"{sequence} in lower case is about fixed axes; for moving axes write {sequence.upper()}"
+    return replace(verdict, notes=(*verdict.notes, note))
+
+
+def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim in its context, as far as all words of the context are understood and used."""
+    if obscure := claim.context.obscure:
+        reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
+        return Verdict("definition", reason=reason)
     without, verdict = verdict, _by_context(claim, named, verdict)
+    if any(is_at_open_place(claim.context, known.name) for known in verdict.recognised_as):
+        reason = "nothing says at which place of the body the pivot is; write for example 'about an end'"
+        return Verdict("definition", reason=reason)
     if verdict.verdict == "true":
         verdict = _with_order(claim.context, verdict, [*letters_of(named.formula)])
-        verdict = _with_axes(claim.context, _with_sides(verdict))
+        verdict = _with_tangent(claim.context, _with_axes(claim.context, _with_sides(verdict)))
     names = " ".join(known.name for known in verdict.recognised_as)
     own = {*plain_words(names).split(), *plain_words(text(named.formula)).split(), *ENGLISH}
     letters = {letter.lower() for letter in letters_of(named.formula)}
@@ -160,6 +177,16 @@ def _with_sides(verdict: Verdict) -> Verdict:
     return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
 
 
+def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
+    """Return the verdict "recognised" in place of "true" if a tangent of a disk or ring is normal to its plane."""
+    places = {context.place, *(meaning.place for meaning in context.meanings)}
+    normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
+    if TANGENT not in places or not normal or (context.body and context.body.axes):
+        return verdict
+    note = "guessed, not stated: the tangent is normal to the plane of the body, not in it"
+    return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
+
+
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
     """Return the verdict, changed from "true" to "recognised" if a letter such as I_1 stands for another axis.
 
@@ -183,6 +210,7 @@ def _is_exchanged(known: Identification) -> bool:
     return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
 
 
+TANGENT = "about a tangent"
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
@@ -206,7 +234,14 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
         return verdict
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
-        reasons = list(misfits(context, known.name, quantity)) or ["with other letters"]
+        reasons = list(misfits(context, known.name, quantity))
+        if not reasons and verdict.verdict == "definition":  # an author may use other words for a letter
+            reason = f"the context gives the letters other meanings than in the formula of the {known.name}"
+            return replace(verdict, reason=reason)
+        reasons = reasons or ["with other letters"]
+        is_partly_known = context.body is not None and not context.body.kind.shape
+        if is_partly_known and verdict.verdict == "definition" and "of another body" in reasons:
+            return verdict  # symrot derives a few formulas only for such a body
         sentence = f"this is the formula {' and '.join(reasons)}: the {known.name}"
         word = "doubtful" if verdict.verdict == "definition" else verdict.verdict
         return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")
@@ -216,6 +251,11 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
     """Return the derived formulas that match a claim in the other frame or, if there are none, without its context."""
     context = claim.context
+    if context.body and (context.place or context.body.axes):
+        elsewhere = replace(context, body=replace(context.body, place="", axes=""))
+        of_body = verdict_on_name(replace(claim, context=elsewhere), named, repair=False).recognised_as
+        if of_body:
+            return of_body
     if context.frame:
         flipped = replace(context, frame="space" if context.frame == "body" else "body")
         in_other_frame = verdict_on_name(replace(claim, context=flipped), named, repair=False).recognised_as
@@ -225,8 +265,9 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict with a note on the words in the likeliest formula's name that nothing states."""
-    likeliest = verdict.recognised_as[0]
+    """Return the verdict "recognised" with a note on the words of the likeliest formula that nothing states."""
+    readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
+    verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
 
@@ -370,7 +411,12 @@ def _diagnosed(
         for repair in repairs
         if repair.text.endswith(end)
     )
-    return (diagnosis if own else none), own
+    return (diagnosis if own else none), tuple(sorted(own, key=_neatness))
+
+
+def _neatness(repair: Repair) -> tuple[bool, int]:
+    """Return a sort key of repairs: those with one fault first, and short ones first."""
+    return repair.code == "two_faults", len(repair.text)
 
 
 def _equal(target: Any, value: Any) -> Decision | None:
@@ -427,7 +473,10 @@ def _with_letters(context: Context, target: Any) -> Any:
     if context.body.kind.title == "cube" and not letters:
         letters = {"b": "a", "c": "a"}
     own = {symbol.name: symbol for symbol in target.free_symbols}
-    return target.xreplace({own[name]: Symbol(letter, real=True) for name, letter in letters.items() if name in own})
+    factors = {name: Rational(factor.numerator, factor.denominator) for name, factor in context.body.factors.items()}
+    return target.xreplace({
+        own[name]: factors.get(name, 1) * Symbol(letter, real=True) for name, letter in letters.items() if name in own
+    })  # fmt: skip
 
 
 def _assignments(

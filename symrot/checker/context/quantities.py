@@ -4,10 +4,14 @@ Words in the names of derived formulas, and patterns of symbols, tell which form
 """
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 
-__all__ = ["AMBIGUOUS", "PLACES", "QUANTITIES", "Quantity", "place_of_words", "plain_words", "unused_words"]
+__all__ = [
+    "AMBIGUOUS", "CENTRE", "LINES", "PLACES", "QUANTITIES", "RIM", "SURFACE", "Quantity", "place_of_words",
+    "plain_words", "unused_words",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -154,24 +158,62 @@ QUANTITIES: tuple[Quantity, ...] = (
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
 """Words that name more than one quantity -> what to write instead."""
 
+CENTRE, CORNER, RIM, SURFACE = (
+    "about the centre of mass", "about a corner", "about a point of the rim", "about a point of the surface",
+)  # fmt: skip
 PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    ("about the centre of mass", ("centre", "centre of mass", "centroid", "diameter", "central axis"),
-     ("about its centre of mass", "about their centre of mass")),
+    (CENTRE, ("centre", "centre of mass", "centroid", "central axis"),
+     ("about its centre of mass", "about their centre of mass", "of given density", "radius of gyration of a")),
     ("about an end", ("end", "one end", "centre of an end", "centre of one end"),
      ("about an end", "about the centre of an end")),
     ("about the tip", ("tip", "apex", "vertex"), ("about its tip",)),
     ("about the base", ("base", "centre of the base", "centre of the flat face", "bottom", "centre of the bottom"),
      ("about the centre of the base", "about the centre of the flat face", "about the centre of the bottom")),
-    ("about a corner", ("corner", "first corner", "right corner"),
+    (CORNER, ("corner", "first corner", "right corner"),
      ("about a corner", "about the first corner", "about the corner at (0, 0)")),
-    ("about a point of the rim", ("rim", "point of its rim", "point of the rim"), ("about a point of its rim",)),
-    ("about a point of the surface", ("tangent", "point of its surface", "point of the surface"),
+    (RIM, ("rim", "point of its rim", "point of the rim"), ("about a point of its rim",)),
+    (SURFACE, ("point of its surface", "point of the surface"),
      ("about a point of its surface",)),
     ("about the middle of a side", ("middle of a side",), ("about the middle of a side",)),
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
     ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
 )  # fmt: skip
 """A place of an axis: its title, the words for it after "about", and the words for it in names of formulas."""
+
+ROUND = (
+    "a cylinder", "a hollow cylinder", "a thin tube", "a annulus", "a cone", "a frustum", "a disk", "a ring", "a torus",
+    "a hemisphere",
+)  # fmt: skip
+BALLS = ("a sphere", "a spherical shell", "a hollow sphere")
+LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
+    "about a diameter": (
+        ("diameter", "axis in plane through centre"),
+        {**dict.fromkeys(ROUND, (CENTRE, "xy")), **dict.fromkeys(BALLS, (CENTRE, "xyz"))},
+    ),
+    "about its axis": (
+        ("axis", "symmetry axis", "axis of symmetry", "own axis", "longitudinal axis", "figure axis", "geometric axis",
+         "cylinder axis", "polar axis", "z axis", "z-axis"),
+        {**dict.fromkeys(ROUND, (CENTRE, "z")), **dict.fromkeys(BALLS, (CENTRE, "xyz")),
+         "a conical shell": ("about the tip", "z")},
+    ),
+    "about a transverse axis through the centre": (
+        ("transverse axis", "transverse axis through centre", "transverse axis through centre of mass"),
+        dict.fromkeys((*ROUND, "a rod"), (CENTRE, "xy")),
+    ),
+    "about a tangent": (
+        ("tangent", "tangent line", "tangential axis", "axis tangent to it"),
+        {"a disk": (RIM, "yz"), "a ring": (RIM, "yz"), "a sphere": (SURFACE, "xy")},
+    ),
+    "about an edge": (
+        ("edge", "one edge", "side", "one side", "one of edges", "one of sides"),
+        {"a box": (CORNER, "xyz"), "a plate": (CORNER, "xy")},
+    ),
+    "about its base": (
+        ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
+    ),
+}  # fmt: skip
+"""A line as an axis: its title -> the words for it after "about", and for each body that has such a line, the place in
+the names of derived formulas, and the axes there that are such lines. The other bodies have no such line."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -205,24 +247,34 @@ def plain_words(text: str) -> str:
     return " ".join(words.split())
 
 
-def place_of_words(words: str) -> tuple[str, str]:
+def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
     """Return the title of the place of an axis in plain words, or an empty text, and the words without it.
+
+    ``formulas`` are the phrases for the body in the names of formulas; a line that the body does not have is no place.
 
     Examples
     --------
     >>> place_of_words("of a rod about one end")
     ('about an end', 'of a rod')
     """
+    titled = [(title, phrases) for title, phrases, _ in PLACES]
+    lines = [(title, phrases) for title, (phrases, bodies) in LINES.items() if not formulas or {*bodies} & {*formulas}]
     places = [
         (match, title)
-        for title, phrases, _ in PLACES
+        for title, phrases in (*lines, *titled)
         for phrase in phrases
-        if (match := re.search(rf"(through|about|hung at|hung from|at) {plain_words(phrase)}(?![\w-])(?! of )", words))
+        if (match := re.search(rf"(through|about|hung at|hung from|at) {plain_words(phrase)}{_END_OF_PLACE}", words))
     ]
     if not places:
         return "", words
     match, title = max(places, key=lambda pair: len(pair[0][0]))
-    return title, " ".join(words.replace(match[0], " ", 1).split())
+    rest = words.replace(match[0], " ", 1)
+    if match[1] == "through":
+        rest = re.sub(r"\babout (axis )?(?=\s|$)", " ", rest, count=1)
+    return title, " ".join(rest.split())
+
+
+_END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 
 
 def unused_words(words: str) -> str:

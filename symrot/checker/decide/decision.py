@@ -13,7 +13,7 @@ from itertools import product
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Ge, Gt, I, Ne, Rational, Symbol, atan2, preorder_traversal
+from sympy import Abs, Expr, Ge, Gt, I, Ne, Poly, Rational, Symbol, atan2, fraction, nan, oo, preorder_traversal, zoo
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.decide.conditions import branch_requirements, requirements
@@ -108,13 +108,59 @@ def decide_equation(equation: Equation) -> Decision:
     """
     try:
         with one_decision():
-            return _decide(equation)
+            decision = _decide(equation)
+        return _without_needless(decision, equation) if decision.verdict == "conditional" else decision
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
     except (TypeError, AttributeError) as reason:
         if is_unordered(reason):
             return Decision("undecided", reason="two numbers in it are too close to tell which is larger")
         raise
+
+
+def _without_needless(decision: Decision, equation: Equation) -> Decision:
+    """Return a decision without the divisors of its conditions at whose zeros the sides are defined and equal.
+
+    The proof of ``sqrt(x**2*y**2) == x*y`` divides by ``abs(y)``, but the equation is true for ``y = 0`` too.
+    """
+    return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
+
+
+def _without_divisor(condition: Any, equation: Equation) -> Any:
+    """Return the condition of a sign without its divisor, if the equation is true where the divisor is zero."""
+    if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
+        return condition
+    signs = []
+    for value in condition.signs:
+        above, below = fraction(value)
+        is_free = isinstance(below, Abs) and _is_true_at_zeros(below.args[0], equation)
+        signs.append(above if is_free else value)
+    return replace(condition, signs=tuple(signs))
+
+
+def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
+    """Return whether an equation is true where a formula is zero; False for one with more symbols or other zeros."""
+    symbol = next(iter(formula.free_symbols))
+    if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
+        return False
+    zeros = Poly(formula, symbol).real_roots()
+    return all(zero.is_Rational and _is_true_at({symbol: zero}, equation) for zero in zeros)
+
+
+def _is_true_at(point: dict[Expr, Expr], equation: Equation) -> bool:
+    """Return whether both sides of an equation are defined and equal where some symbols have values."""
+    divisors, radicands = (
+        tuple(formula.subs(point) for formula in formulas) for formulas in (equation.divisors, equation.radicands)
+    )
+    left, right = (side.subs(point) for side in (equation.left, equation.right))
+    undefined = any(entry.has(zoo, nan, oo) for side in (left, right) for entry in flatten(side)[0])
+    if undefined or 0 in divisors or equation.nonzero:
+        return False
+    try:
+        decision = decide_equation(Equation(left, right, (), divisors, (), radicands))
+    except InputError:
+        return False
+    return decision.verdict == "true" and not decision.conditions
 
 
 def _decide(equation: Equation) -> Decision:

@@ -211,6 +211,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         tried.add(near.tree)
         if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
+        if _says_too_little(claim, named, near):
+            continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
@@ -224,6 +226,17 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         repairs=tuple(repair for repair, _ in repairs.values()),
         recognised_as=readings,
     )
+
+
+def _says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether a moment of inertia without an axis may be that of another body, which symrot does not have."""
+    is_bare = re.fullmatch("[IJ]", named.name) is not None
+    return is_bare and claim.context.body is None and _is_of_body(near.code, near.known.name)
+
+
+def _has_diameter(known: Identification) -> bool:
+    """Return whether the letter of a diameter, d or D, stands for the radius in the reading of a formula."""
+    return any(old in ("R", "R_1", "R_2") and new[:1] in ("d", "D") for old, new in known.mapping.items())
 
 
 def _is_of_body(code: str, known: str) -> bool:
@@ -256,12 +269,15 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term"):
-        return False  # with a missing letter that is zero, the formula is a special case
+    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree)
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
+        return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         return words is not None
+    if near.code == "extra_term":
+        return False  # the formula may be a more general one
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
     if is_general and not (near.code == "wrong_symbol" and len(letters) >= MANY_LETTERS):
         return False
@@ -290,7 +306,7 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     if len(letters) < LEAST_SYMBOLS_EDITED + (not _has_terms(named.formula)):
         return None
     for edit in _edits(claim, named.formula):
-        if _letters(edit.tree) < letters:  # the formula may be a more general one, with a letter of its own
+        if _letters(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
         all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
@@ -350,7 +366,11 @@ def _readings_of_relation(
     value = primitive(value)
     letters = {*letters_of(tree), *letters_of(named.side)}
     looked_up = identified(value, steps=False, named=True, quantity="", is_relation=True)
-    fitting = (known for known in looked_up if _fits_context(claim.context, named, known, letters))
+    fitting = (
+        known
+        for known in looked_up
+        if _keeps_places(named, known) and _fits_context(claim.context, named, known, letters)
+    )
     return tuple(islice(fitting, MOST_READINGS))
 
 
@@ -374,6 +394,7 @@ def _readings_of_formula(
         if ending_of(known.name) == ending
         and _fits(named, known, is_matrix(value))
         and _fits_context(claim.context, named, known, letters)
+        and not _has_diameter(known)
     ]
     fitting.sort(key=lambda known: (*_strangeness(named, known), _rarity(known)))
     likeliest = [known for known in fitting if _strangeness(named, known)[:2] == _strangeness(named, fitting[0])[:2]]
@@ -425,6 +446,8 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     is_parallel = re.search("parallel.ax", known.name) is not None
     if is_parallel and CENTRE.fullmatch(named.name) and any(map(POINT.fullmatch, letters)):
         return False
+    if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
+        return False  # the whole spin is no rate of an angle
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False

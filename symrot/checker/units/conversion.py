@@ -7,48 +7,93 @@ other names.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, number, product
 from symrot.checker.units.units import NOTHING, Dimension, raised, read_unit, times, unit_text
+from symrot.errors import InputError
 
-__all__ = ["FACTORS", "Measured", "UnitProduct", "measured_text"]
+__all__ = [
+    "FACTORS", "ONE_PER_SECOND", "STANDARD_GRAVITY", "Measured", "UnitProduct", "measured_text", "numeric_end",
+    "unit_beside_letters",
+]  # fmt: skip
 
 DEGREE = "deg"
+INCH, FOOT, MILE = Fraction("0.0254"), Fraction("0.3048"), Fraction("1609.344")
+POUND, GRAVITY = Fraction("0.45359237"), Fraction("9.80665")
 FACTORS: dict[str, tuple[Fraction, int]] = {
     **dict.fromkeys(("kg", "m", "s", "rad", "sr", "N", "J", "W", "Pa", "Hz", "A", "K"), (Fraction(1), 0)),
     DEGREE: (Fraction(1, 180), 1), "rev": (Fraction(2), 1), "rpm": (Fraction(1, 30), 1),
-    "g": (Fraction(1, 1000), 0), "mg": (Fraction(1, 10**6), 0),
-    "lbm": (Fraction("0.45359237"), 0), "slug": (Fraction("0.45359237") * Fraction("9.80665") / Fraction("0.3048"), 0),
+    "kHz": (Fraction(1000), 0), "MHz": (Fraction(10**6), 0),
+    "g": (Fraction(1, 1000), 0), "mg": (Fraction(1, 10**6), 0), "lbm": (POUND, 0), "lb": (POUND, 0),
+    "slug": (POUND * GRAVITY / FOOT, 0),
     "mm": (Fraction(1, 1000), 0), "cm": (Fraction(1, 100), 0), "km": (Fraction(1000), 0), "um": (Fraction(1, 10**6), 0),
-    "in": (Fraction("0.0254"), 0), "ft": (Fraction("0.3048"), 0),
+    "in": (INCH, 0), "ft": (FOOT, 0), "yd": (3 * FOOT, 0), "mile": (MILE, 0),
     "ms": (Fraction(1, 1000), 0), "us": (Fraction(1, 10**6), 0), "min": (Fraction(60), 0), "h": (Fraction(3600), 0),
-    "d": (Fraction(86400), 0),
-    "kN": (Fraction(1000), 0), "lbf": (Fraction("0.45359237") * Fraction("9.80665"), 0),
-    "kJ": (Fraction(1000), 0), "kW": (Fraction(1000), 0), "kPa": (Fraction(1000), 0), "MPa": (Fraction(10**6), 0),
+    "d": (Fraction(86400), 0), "mph": (MILE / 3600, 0), "knot": (Fraction(1852, 3600), 0),
+    "kN": (Fraction(1000), 0), "MN": (Fraction(10**6), 0), "lbf": (POUND * GRAVITY, 0),
+    "kJ": (Fraction(1000), 0), "MJ": (Fraction(10**6), 0), "GJ": (Fraction(10**9), 0),
+    "Wh": (Fraction(3600), 0), "kWh": (Fraction(3600000), 0),
+    "kW": (Fraction(1000), 0), "MW": (Fraction(10**6), 0), "GW": (Fraction(10**9), 0),
+    "hp": (550 * FOOT * POUND * GRAVITY, 0),
+    "kPa": (Fraction(1000), 0), "MPa": (Fraction(10**6), 0), "GPa": (Fraction(10**9), 0),
+    "bar": (Fraction(10**5), 0), "atm": (Fraction(101325), 0),
 }  # fmt: skip
-"""Unit -> its factor to SI units, as a fraction and a power of pi; a hertz is one per second, not one turn."""
+"""Unit -> its factor to SI units, as a fraction and a power of pi; a hertz is one per second."""
 
-ALIASES = {"lb": "lbm", "sec": "s", "degrees": DEGREE, "degree": DEGREE, "Nm": "N m", "μm": "um"}
+OTHER_MEANINGS: dict[str, tuple[Fraction, int, str]] = {
+    "Hz": (Fraction(2), 1, "1/s"), "g": (GRAVITY, 0, "m/s^2"), "lb": (POUND * GRAVITY, 0, "N"),
+}  # fmt: skip
+"""Unit -> another meaning, by its factor and SI unit: one rotation per second, the standard gravity, a force."""
+
+ONE_PER_SECOND = "with the hertz as one per second, and the radian as 1"
+STANDARD_GRAVITY = "with g for the standard gravity, 9.80665 m/s^2"
+
+ANGULAR = frozenset({"rad", "rev", "rpm", DEGREE})
+"""Units next to which a hertz is one rotation per second."""
+
+ALIASES = {
+    "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "Nm": "N m", "μm": "um",
+    "miles": "mile", "knots": "knot",
+}  # fmt: skip
+PRODUCTS = frozenset({"mg", "ms", "hp"})
+"""Units that are products of letters just as often: the weight m*g."""
+
+CERTAIN = frozenset({
+    "kg", "mm", "cm", "km", "rad", "rpm", "kN", "kJ", "kW", "kPa", "MPa", "Hz", "lbf", "lbm", "slug", "MJ", "kWh",
+    "MW", "mph",
+})  # fmt: skip
+"""Units that are no letters of formulas, even next to letters."""
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
-_POWER = r"(?:(?:\^|\*\*)\(?-?\d+\)?|[²³]|⁻[¹²³])?"
-_ONE = rf"(?:{_UNIT})(?![\w(']){_POWER}"
-_NUMBER = r"(?<![\w.])\d+(?:\.\d*)?(?:[eE][+-]?\d+)?"
-_MEASURED = re.compile(rf"({_NUMBER}|\bpi\b|π)([ *·⋅]*)({_ONE}(?:\s*[/*·⋅ ]\s*{_ONE})*)")
-_PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT})(?![\w('])(?P<power>{_POWER})")
+_POWER = r"(?:(?:\^|\*\*)(?:\(-?\d+\)|-?\d+)|[²³]|⁻[¹²³])?"
+_NO_LETTER = r"(?!(?![²³⁻¹])\w|[('])"
+_ONE = rf"(?:{_UNIT}){_NO_LETTER}{_POWER}"
+_NUMBER = r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?"
+_FRACTION = rf"{_NUMBER}\s*/\s*{_NUMBER}"
+_VALUE = (
+    rf"(?:{_NUMBER}\s*[*·⋅×]\s*)?{_NUMBER}\s*(?:(?:\^|\*\*)\s*(?:\([+-]?\d+\)|[+-]?\d+)|⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
+    rf"|(?:{_NUMBER}\s*[*·⋅]?\s*)?(?:pi\b|π)(?:\s*/\s*{_NUMBER})?|{_FRACTION}|{_NUMBER}|(?<=\))"
+)
+"""A number: a power such as 3*10^8, a multiple of pi, a fraction, a decimal number; or nothing after a bracket."""
+
+_MEASURED = re.compile(rf"(?<![\w.^])(?<!\*\*)({_VALUE})(\s*/\s*|[ *·⋅]*)({_ONE}(?:\s*[/*·⋅ ]\s*{_ONE})*)")
+_PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT}){_NO_LETTER}(?P<power>{_POWER})")
 _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
     (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "), (r"\\(?:cdot|times)\b", "*"),
     (r"\\approx\b", "="), (r"\\(?:left|right)\b", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi\b", " pi "),
-    (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\$", ""),
+    (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"), (r"\$", ""),
 )  # fmt: skip
 """LaTeX of numbers with units -> the same in plain text."""
 
+_TEMPERATURE = re.compile(r"\d\s*(°\s*[CF])(?!\w)")
 _SUPERSCRIPTS = {"²": 2, "³": 3, "⁻¹": -1, "⁻²": -2, "⁻³": -3}
 _OTHER_NAME = re.compile(r"(?<![\w.])[^\W\d_]\w*")
-_FUNCTIONS = ("sqrt", "sin", "cos", "tan", "pi", "π")
+_FUNCTIONS = (
+    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "arcsin", "arccos", "arctan", "exp", "abs", "pi", "π",
+)  # fmt: skip
 _PLAUSIBLE = ("m", "s", "N", "J", "W", "A", "K", "h", "d", "m/s", "m/s^2", "N m", "N s", "N m s", "1/s", "J s", "m^2")
 
 
@@ -88,50 +133,146 @@ class Measured:
     """A text whose numbers have units: the text with a name for each product of units, and these products.
 
     ``is_sure`` says that these certainly are units: one of them has several letters, or the text has no other name.
+    ``others`` are other readings of the text, each with the words for what it reads in another way.
     """
 
     source: str
     text: str
     units: dict[str, UnitProduct] = field(default_factory=dict)
     is_sure: bool = True
+    others: tuple[tuple[str, "Measured"], ...] = ()
 
     def restored(self, text: str) -> str:
         """Return a text about the claim with the units in place of their names."""
-        return re.sub(r"\*?(unit_\d+)", lambda match: f" {self.units[match[1]].text}", text)
+        return re.sub(
+            r"(\w)?\*?(unit_\d+)", lambda match: f"{match[1] or ''} {self.units[match[2]].text}".lstrip(), text
+        )
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A way to read a text: the other meanings of units, and whether a number with its unit divides as a whole."""
+
+    meanings: frozenset[str] = frozenset()
+    by_whole: bool = True
 
 
 def measured_text(source: str) -> Measured | None:
     """Return a text with names for its units, or None for a text that has no numbers with units.
 
+    Raises
+    ------
+    InputError
+        For a temperature in degrees Celsius or Fahrenheit.
+
     Examples
     --------
     >>> measured = measured_text("1500 rpm = 157.08 rad/s")
     >>> measured.text, [unit.text for unit in measured.units.values()]
-    ('1500*unit_1 = 157.08*unit_2', ['rpm', 'rad/s'])
+    ('(1500*unit_1) = (157.08*unit_2)', ['rpm', 'rad/s'])
     >>> measured_text("T = 2 m g") is None
     True
     """
+    plain = _plain(source)
+    if plain is None:
+        return None
+    if match := _TEMPERATURE.search(plain):
+        raise InputError(f"expected units of mechanics, got {match[1]!r}; write a temperature in K")
+    names = {name for match in _MEASURED.finditer(plain) for name, _ in _pieces(match[3])}
+    usual = frozenset({"Hz"} & names if names & ANGULAR else ())
+    main = _read(plain, _Way(usual))
+    if main is None:
+        return None
+    ways = {
+        "from left to right, with units outside of the fractions before them": _Way(usual, by_whole=False),
+        ONE_PER_SECOND: _Way(usual - {"Hz"}),
+        "with lb for the force lbf": _Way(usual | ({"lb"} & names)),
+        STANDARD_GRAVITY: _Way(usual | ({"g"} & names)),
+    }
+    others = ((words, _read(plain, way)) for words, way in ways.items())
+    return replace(main, others=tuple((words, other) for words, other in others if other and other != main))
+
+
+def _plain(source: str) -> str | None:
+    """Return a text with units without the commands of LaTeX; None if some are left."""
     plain = source
     for pattern, instead in _LATEX:
         plain = re.sub(pattern, instead, plain)
-    if "\\" in plain or "{" in plain:
-        return None
-    plain = plain.replace("−", "-")
+    return None if "\\" in plain or "{" in plain else plain.replace("−", "-")
+
+
+def _read(plain: str, way: _Way) -> Measured | None:
     units: dict[str, UnitProduct] = {}
-    stars = [match[2] for match in _MEASURED.finditer(plain) if "*" in match[2]]
+    matches = list(_MEASURED.finditer(plain))
+    are_factors = any("*" in match[2] or "/" in match[2] for match in matches)
 
     def named(match: re.Match[str]) -> str:
-        unit = _unit_product(match[3])
+        unit = _unit_product(f"/{match[3]}" if "/" in match[2] else match[3], way.meanings)
         name = next((name for name, other in units.items() if other == unit), f"unit_{len(units) + 1}")
         units[name] = unit
-        return f"{match[1]}*{name}"
+        divides = plain[: match.start()].rstrip().endswith("/")
+        fraction = re.fullmatch(_FRACTION, match[1])
+        if fraction and not way.by_whole:
+            return f"({match[1].replace('/', '/(')}*{name}))"
+        return f"{match[1]}*{name}" if (divides and not way.by_whole) or not match[1] else f"({match[1]}*{name})"
 
     text = _MEASURED.sub(named, plain)
-    has_long = any(len(name) > 1 for unit in units.values() for name in re.findall(r"[^\W\d_]+", unit.text))
+    typed = {match["unit"] for one in matches for match in _PIECE.finditer(one[3])}
+    has_long = any((len(name) > 1 or name == "°") and name not in PRODUCTS for name in typed)
+    if typed == {"°"} and not re.search(rf"(^|=)\s*-?{_NUMBER}\s*°\s*($|=)", plain):
+        return None  # an angle in degrees inside of a formula
     names = [name for name in _OTHER_NAME.findall(text) if name not in _FUNCTIONS and name not in units]
-    if not units or (stars and not has_long) or not _only_units(text, names, units, has_long):
+    if not units or (are_factors and not has_long) or not _only_units(text, names, units, has_long):
         return None
     return Measured(plain, text, units, has_long or not names)
+
+
+def numeric_end(source: str) -> tuple[str, str]:
+    """Return the beginning of a chain of equations that has letters, and its end that has numbers with units only.
+
+    Both are empty if there is no such end of at least two links.
+
+    Examples
+    --------
+    >>> numeric_end("F = m a = 2 kg * 3 m/s^2 = 6 N")
+    ('F = m a', '2 kg * 3 m/s^2 = 6 N')
+    """
+    parts = re.split(r"==?", source)
+    for place in range(1, len(parts) - 1):
+        end = "=".join(parts[place:])
+        if (measured := measured_text(end)) and measured.is_sure:
+            return "=".join(parts[:place]).strip(), end.strip()
+    return "", ""
+
+
+def unit_beside_letters(source: str) -> str:
+    """Return the first number with a unit, in a text with other letters, that is surely no product of letters; or "".
+
+    It is sure if the unit has several letters, or if a side is only this number with a unit such as m/s^2, and the
+    other sides have none of these letters.
+
+    Examples
+    --------
+    >>> unit_beside_letters("m L^2/12 = 1 kg m^2"), unit_beside_letters("v^2/r = 3 m/s^2")
+    ('1 kg m^2', '3 m/s^2')
+    >>> unit_beside_letters("2 x = 3 m")
+    ''
+    """
+    plain = _plain(source) or ""
+    for match in _MEASURED.finditer(plain):
+        typed = {piece["unit"] for piece in _PIECE.finditer(match[3])}
+        if match[1] and "*" not in match[2] and typed & CERTAIN:
+            return match[0].strip()
+    sides = re.split(r"==?", plain)
+    for place, side in enumerate(sides):
+        whole = _MEASURED.fullmatch(side.strip())
+        if whole is None or not whole[1] or "*" in whole[2]:
+            continue
+        typed = {piece["unit"] for piece in _PIECE.finditer(whole[3])}
+        others = {name for other in sides[:place] + sides[place + 1 :] for name in re.findall(r"[^\W\d_]", other)}
+        if len(typed) > 1 and _unit_product(whole[3]).text in _PLAUSIBLE and not typed & others:
+            return side.strip()
+    return ""
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
@@ -154,12 +295,13 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
             yield name, -power if "/" in match["sign"] else power
 
 
-def _unit_product(text: str) -> UnitProduct:
+def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
+    """Return a product of units, some of them with their other meaning."""
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0
     for name, power in _pieces(text):
-        factor, pi = FACTORS[name]
-        dimension = times(dimension, raised(read_unit(name), Fraction(power)))
+        factor, pi, unit = OTHER_MEANINGS[name] if name in meanings else (*FACTORS[name], name)
+        dimension = times(dimension, raised(read_unit(unit), Fraction(power)))
         fraction *= factor**power
         power_of_pi += pi * power
     return UnitProduct(" ".join(text.split()), dimension, fraction, power_of_pi)
