@@ -151,9 +151,9 @@ def test_emitted_files_take_the_place_of_special_ones(tmp_path, capsys):
 
 
 def test_pages_are_not_written_into_a_pipe(tmp_path, monkeypatch, capsys):
-    from symrot import catalogue
+    from symrot.workshop import derivation_pages
 
-    monkeypatch.setattr(catalogue, "pages", lambda say: {"page.md": "text"})
+    monkeypatch.setattr(derivation_pages, "pages", lambda say: {"page.md": "text"})
     os.mkfifo(tmp_path / "page.md")
     os.mkfifo(tmp_path / "other.md")
     (tmp_path / "latin.md").write_bytes(b"\xe9")

@@ -89,6 +89,8 @@ def _is_open_rate(side: Node, other: Node) -> bool:
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
+    if any(node.kind == "call" and node.value == "diff" for _, node in walk(other)):
+        return False  # both sides are derivatives: nothing is given by a letter
     if other == number(0) and side.kind == "product" and any(map(_is_rate, side.args)):
         return True
     return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
