@@ -12,6 +12,8 @@ __all__ = ["decimal", "factor_of", "unit_latex", "unit_of"]
 
 _RECIPROCAL = re.compile(r"^1?\s*/\s*([^\W\d_]+)(?:\^?(\d+))?$")
 
+_BRACKETS = str.maketrans("", "", "()")
+
 _SIGNS = (
     ("⁻", "^-"),
     ("¹", "1"),
@@ -45,7 +47,7 @@ def unit_of(text: str) -> UnitProduct | None:
     if reciprocal:
         plain = f"{reciprocal[1]}^-{reciprocal[2] or 1}"
     measured = measured_text(f"1 {plain} = 1 {plain}")  # one letter alone, without an equation, may be a quantity
-    if measured is None or measured.text != "1*unit_1 = 1*unit_1":
+    if measured is None or measured.text.translate(_BRACKETS) != "1*unit_1 = 1*unit_1":
         return None
     return measured.units["unit_1"]
 
