@@ -502,7 +502,10 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """Function from an epoch, s, to the library of rates that count time from the epoch, and their parameters."""
+        """Function that takes an epoch, s, and returns a pair: a library of rates, and the parameters of these rates.
+
+        The rates are functions of the time since that epoch.
+        """
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -532,7 +535,10 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """Function from an epoch, s, to Python rates whose time is counted from the epoch, and their parameters."""
+        """Function that takes an epoch, s, and returns a pair: rates in Python, and the parameters of these rates.
+
+        The rates are functions of the time since that epoch.
+        """
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":

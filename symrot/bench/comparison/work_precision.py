@@ -1,10 +1,12 @@
 """Work-precision studies: time and error of every available method on one scene.
 
-Each contestant runs at several tolerances. The error of a run is the largest error at four times of the span, each
-reached by a separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the
-whole span are timed alternately (:mod:`symrot.bench.comparison.race`). A decade is a power of ten of the error, such as
-1e-9: it counts the fastest run with at most that error, so no curve is smoothed or extended. Decades below the
-difference between the references are left out.
+Each contestant runs at several tolerances. The motion is compared with a more precise reference
+(:mod:`symrot.bench.comparison.reference`) at four instants of the span, each reached by a separate run; the error is
+the largest of the four differences. Runs over the whole span are timed alternately
+(:mod:`symrot.bench.comparison.race`).
+
+For each power of ten of the error, such as 1e-9, the table has the time of the fastest run whose error is at most that
+large; no curve is smoothed or extended. Powers of ten below the difference between two references are left out.
 """
 
 import hashlib

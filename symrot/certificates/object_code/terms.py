@@ -344,7 +344,7 @@ class Terms:
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
-        """Return a term for the result of an instruction that no C operation rounds like, such as ``rcpps``."""
+        """Return a term for the result of an instruction, such as ``rcpps``, that rounds unlike every C operation."""
         return self.call(f"[{name}]", width, arguments)
 
     # --- choices ------------------------------------------------------------------------------------------------------

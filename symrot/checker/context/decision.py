@@ -428,7 +428,10 @@ def _equal(target: Any, value: Any) -> Decision | None:
 
 
 def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
-    """Yield the derived formulas that a context means, in the letters of a value, in all ways of assigning letters."""
+    """Yield each derived formula for a quantity that fits a context, once for each assignment of its symbols.
+
+    The symbols of the formula are replaced by symbols of ``value``, the formula of the claim.
+    """
     shape = value.shape if is_matrix(value) else None
     own = atoms_of(list(value) if shape else [value]) - {time}
     for known in _all_known():
@@ -453,7 +456,10 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the angle rates that a claim lacks, each with its derivative; empty if the claim has no derivative."""
+    """Return the symbols of angle rates that a reading does not use, each with the derivative that it means.
+
+    The result is empty if the claim writes no derivatives.
+    """
     if not any(atom.is_Derivative for atom in own):
         return {}
     functions = {symbol: Function(symbol.name[1:], real=True)(time) for symbol in ANGLES if symbol.name.startswith("d")}

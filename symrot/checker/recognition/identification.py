@@ -83,7 +83,7 @@ class View:
 def identify(
     formula: Any, *, most: int = MOST, body: str = "", frame: str = "", sequence: str = ""
 ) -> list[Identification]:
-    """Return the known formulas to which a formula is equal, nearest names first; an empty list if there is none.
+    """Return the known formulas to which a formula is equal; those with the same letters come first.
 
     Parameters
     ----------
@@ -92,12 +92,13 @@ def identify(
     most : int
         How many names to return at most.
     body, frame, sequence : str
-        A body in words, ``"body"`` or ``"space"``, and a sequence of Euler angles: other formulas are left out.
+        A body in words, such as ``"thin rod"``; the frame, ``"body"`` or ``"space"``; a sequence of Euler angles, such
+        as ``"ZXZ"``. Formulas for other bodies, frames or sequences are left out.
 
     Returns
     -------
     list of Identification
-        Each is proven; empty for a formula that symrot does not know.
+        Each match is proven. The list is empty for a formula that symrot does not know.
 
     Raises
     ------

@@ -2,8 +2,9 @@
 
 from random import Random
 
-from sympy import Matrix, acos, cos, trigsimp
+from sympy import Matrix, acos, cos
 
+from symrot.exact.decide import normal_form
 from symrot.exercises.problem import Asked, Line, Problem, quantity
 from symrot.kinematics.rotations import elementary_rotation
 from symrot.symbols import phi, theta, x, y, z
@@ -40,7 +41,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
     """The angle of the rotation that two rotations about perpendicular axes make together."""
     one, two = random.sample(AXES, 2)
     matrix = elementary_rotation(two, theta) * elementary_rotation(one, phi)
-    cosine = trigsimp((matrix.trace() - 1) / 2)
+    cosine = normal_form((matrix.trace() - 1) / 2)
     angle = acos((matrix.trace() - 1).expand() / 2)
     return Problem(
         "One rotation in place of two",
@@ -64,7 +65,7 @@ def order_matters(random: Random) -> Problem:
     first = elementary_rotation(two, theta) * elementary_rotation(one, phi) * pointer
     second = elementary_rotation(one, phi) * elementary_rotation(two, theta) * pointer
     difference = first - second
-    square = trigsimp((difference.T * difference)[0].expand())
+    square = normal_form((difference.T * difference)[0].expand())
     return Problem(
         "The order of two rotations",
         rf"A pointer of length 1 is along the fixed axis ${one}$. It is rotated by $\phi$ about ${one}$ and by "

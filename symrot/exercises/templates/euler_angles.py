@@ -2,8 +2,9 @@
 
 from random import Random
 
-from sympy import Expr, Matrix, sqrt, trigsimp
+from sympy import Expr, Matrix, sqrt
 
+from symrot.exact.decide import normal_form
 from symrot.exercises.problem import Asked, Line, Problem, Quantity, chain, quantity
 from symrot.kinematics.euler import dcm, rate_jacobian
 from symrot.symbols import angle_rates, angles, dphi, dpsi, dtheta, omega_1, omega_2, omega_3, phi, psi, theta
@@ -70,7 +71,7 @@ def angle_rates_from_omega(random: Random) -> Problem:
     matrix = rate_jacobian(sequence)
     omega = Matrix((omega_1, omega_2, omega_3))
     rate = (matrix.inv() * omega)[place]
-    result = trigsimp(rate)
+    result = normal_form(rate)
     name = (r"\dot\phi", r"\dot\theta", r"\dot\psi")[place]
     used = result.free_symbols
     symbols = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
@@ -136,7 +137,7 @@ def speed_of_rotation(random: Random) -> Problem:
     """The magnitude of the angular velocity from the rates."""
     sequence = random.choice(("ZXZ", "ZYZ"))
     omega = rate_jacobian(sequence) * Matrix(angle_rates)
-    square = trigsimp((omega.T * omega)[0].expand())
+    square = normal_form((omega.T * omega)[0].expand())
     speed = sqrt(square)
     return Problem(
         f"How fast a body rotates, from the angles {sequence}",

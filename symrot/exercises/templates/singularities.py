@@ -2,8 +2,9 @@
 
 from random import Random
 
-from sympy import Integer, Matrix, cos, sin, solve, trigsimp
+from sympy import Integer, Matrix, cos, sin, solve
 
+from symrot.exact.decide import normal_form
 from symrot.exercises.problem import Asked, Line, Problem, quantity
 from symrot.kinematics.euler import dcm, rate_jacobian
 from symrot.symbols import omega_1, omega_2, omega_3, phi, psi, theta
@@ -15,7 +16,7 @@ def determinant(random: Random) -> Problem:
     """The determinant of the rate matrix."""
     sequence = random.choice(SEQUENCES)
     matrix = rate_jacobian(sequence)
-    value = trigsimp(matrix.determinant)
+    value = normal_form(matrix.determinant)
     return Problem(
         f"The determinant of the rate matrix of {sequence}",
         rf"Intrinsic Euler angles $\phi$, $\theta$, $\psi$ of the sequence {sequence} give the angular velocity in "
@@ -32,7 +33,7 @@ def growth_near_lock(random: Random) -> Problem:
     """The rate of precession that a fixed angular velocity causes near the lock."""
     sequence, at = random.choice((("ZXZ", 0), ("ZYX", 90)))
     omega = Matrix((omega_1, omega_2, omega_3))
-    rate = trigsimp((rate_jacobian(sequence).inv() * omega)[0].subs({psi: 0}))
+    rate = normal_form((rate_jacobian(sequence).inv() * omega)[0].subs({psi: 0}))
     used = next(symbol for symbol in omega if rate.has(symbol))
     near = "2 3 4 5" if at == 0 else "85 86 87 88"
     return Problem(
@@ -78,7 +79,7 @@ def only_sum_of_angles(random: Random) -> Problem:
 def angle_of_lock(random: Random) -> Problem:
     """The smallest second angle, zero or more, at which a sequence locks."""
     sequence = random.choice(SEQUENCES)
-    determinant_of = trigsimp(rate_jacobian(sequence).determinant)
+    determinant_of = normal_form(rate_jacobian(sequence).determinant)
     lock = min((root for root in solve(determinant_of, theta) if root >= 0), key=lambda root: root)
     return Problem(
         f"Where {sequence} locks",

@@ -603,7 +603,10 @@ class SwitchedRun(RunState):
             return self.system.regime(self.held, modes)
         except InputError:
             raise IntegrationStopped(
-                self.t, f"the motion would slide along {self._names_of_held()}, but not in exactly one way", self.end
+                self.t,
+                f"the motion would slide along {self._names_of_held()}, but not in exactly one way: "
+                "none or several sliding motions fit",
+                self.end,
             ) from None
 
     def _names_of_held(self) -> str:

@@ -92,7 +92,7 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 
 
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
-    """Return a formula as printed and as corrected; nothing is corrected if no correction was found."""
+    """Return text that shows a formula as printed and as corrected; only as printed if no correction is known."""
     where = item.claim["where"]
     if not item.parts:
         digits = {"printed": item.claim["printed_value"]}
