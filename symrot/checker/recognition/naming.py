@@ -24,7 +24,7 @@ from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.nearby import Near, near_formulas
-from symrot.checker.recognition.relations import primitive
+from symrot.checker.recognition.relations import primitive, terms_expanded
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
@@ -64,6 +64,9 @@ PER_NAME, PER_PLACE = 0.1, 0.3
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
+
+MOST_TERMS = 5000
+"""The most terms of an equation, when multiplied out, that is compared with known relations: these are shorter."""
 
 MOST_READINGS = 4
 """The most formulas that one verdict names."""
@@ -362,6 +365,8 @@ def _readings_of_relation(
     except InputError:
         return ()
     if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
+        return ()
+    if terms_expanded(value) > MOST_TERMS:
         return ()
     value = primitive(value)
     letters = {*letters_of(tree), *letters_of(named.side)}

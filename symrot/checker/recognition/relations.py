@@ -5,14 +5,18 @@ formula: the condition of steady precession gives the spin, the torque and the m
 """
 
 from collections.abc import Iterator
+from math import comb, prod
 from typing import Any, NamedTuple
 
 from sympy import (
+    Add,
     Expr,
     GeneratorsNeeded,
     Matrix,
+    Mul,
     Poly,
     PolynomialError,
+    Pow,
     Rational,
     Symbol,
     cancel,
@@ -35,7 +39,7 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import quaternion
 from symrot.kinematics.euler import rate_jacobian
 
-__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved"]
+__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved", "terms_expanded"]
 
 PHI, THETA, PSI = symbols.angles
 DPHI, DTHETA, DPSI = symbols.angle_rates
@@ -99,6 +103,18 @@ def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
         else:
             continue
         yield name, relation.source, factor_terms(cancel(-rest / slope))
+
+
+def terms_expanded(formula: Expr) -> int:
+    """Return a bound on the number of terms that a formula has when its products and powers are multiplied out."""
+    if isinstance(formula, Add):
+        return sum(map(terms_expanded, formula.args))
+    if isinstance(formula, Mul):
+        return prod(map(terms_expanded, formula.args))
+    if isinstance(formula, Pow) and formula.exp.is_Integer:
+        terms, power = terms_expanded(formula.base), abs(int(formula.exp))
+        return comb(terms + power - 1, power)
+    return 1
 
 
 def primitive(difference: Expr) -> Expr:
