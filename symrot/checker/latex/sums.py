@@ -211,8 +211,6 @@ class SumsPart(Cursor):
         if mark.text in ("\\times", "×"):
             self.note_vector(node)
             return Node("call", "skew", (node,))
-        if mark.text == "\\circ":
-            return product([node, Node("name", "pi"), Node("inv", None, (number(180),))])
         texts = [item.text for item in getattr(inside, "items", ())]
         if texts[:3:2] == ["(", ")"] or (isinstance(mark, tree.Delimited) and len(mark.inside.items) == 1):
             raise self.fail("a power like x^2 instead of x^{(2)}", inside)
