@@ -202,8 +202,8 @@ class Trajectory(MotionSamples):
     def quaternion(self) -> Floats:
         """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
-        if isinstance(self._parts, tuple):
-            return conversions.normalize(self._parts[1])
+        if isinstance(self._parts, tuple):  # of a closed form: rounded from a unit quaternion
+            return self._parts[1].copy()
         return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property
