@@ -167,7 +167,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
-    def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
+    def whole(start: dict[str, Any]) -> tuple[float, float, float]:
         """Return the microseconds of a call, of the motion itself, and of the rest of the call."""
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
@@ -177,7 +177,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return call, following + constants, more - constants
 
     assert parts is not None
-    starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
+    starts: tuple[dict[str, Any], ...] = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),

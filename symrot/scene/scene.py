@@ -3,23 +3,28 @@
 All numbers are exact. This module does not use SymPy.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from symrot.dynamics.torque_kinds import TABLE_KIND
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
 from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
 from symrot.scene.body import Body, read_body
+from symrot.scene.changes import changed, replaces_shapes
+from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
 from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, table, text, vector
 from symrot.scene.samples import Table, read_samples
 from symrot.scene.torque import Torque, read_torque
 
 __all__ = [
-    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene",
-    "shipped_scenes",
+    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "SceneSource", "Span", "Table", "Torque",
+    "load_scene", "shipped_scenes",
 ]  # fmt: skip
 
 SCHEMA = 1
@@ -158,6 +163,7 @@ class Scene:
     output: Output
     tolerance: Fraction
     table: Table | None = None  # a torque given by samples, in addition to the torques given by formulas
+    origin: "_Origin | None" = field(default=None, compare=False, repr=False)
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
@@ -186,16 +192,189 @@ class Scene:
         InputError
             If the content is not a valid scene; the message names key, expectation and value.
         """
-        return _read_scene(content, where, where, None, table_folders)
+        return _read_scene(plain(content, where), where, where, None, table_folders)
+
+    @classmethod
+    def build(cls, *, name: str = "scene", **tables: Any) -> "Scene":
+        """Return the scene with the given tables; each keyword argument is a table or key of a scene file.
+
+        Parameters
+        ----------
+        name : str
+            Short name of the scene.
+        **tables
+            ``body``, ``initial`` and ``span``, and optionally ``torque`` (a list), ``output``, ``accuracy``, ``title``
+            and ``source``, with the content of ``docs/scene_format.md``. Vectors and tensors may be NumPy arrays, and
+            an attitude may be a rotation of SciPy.
+
+        Raises
+        ------
+        InputError
+            If a table is missing, unknown or not valid; the message names key, expectation and value.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> scene = symrot.Scene.build(
+        ...     body={"shape": "box", "a": 0.2, "b": 0.13, "c": 0.03, "mass": 0.5},
+        ...     initial={"omega": [0.05, 8, 0.02]},
+        ...     span={"t": [0, 10]},
+        ... )
+        >>> scene.body.mass
+        Fraction(1, 2)
+        """
+        return cls.from_dict({"schema": SCHEMA, **tables}, name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of the scene file or dict from which the scene was read, with all changes since then.
+
+        The result is a copy; ``Scene.from_dict`` reads it as an equal scene.
+
+        Raises
+        ------
+        InputError
+            If the body or the torques were replaced by :func:`dataclasses.replace`, which does not change the content.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.load_scene("t_handle").with_(omega=[0, 1, 0]).to_dict()["initial"]["omega"]
+        [0, 1, 0]
+        """
+        return deepcopy(self._content())
+
+    def to_toml(self) -> str:
+        """Return the scene as the text of a scene file; all numbers keep their exact values.
+
+        Raises
+        ------
+        InputError
+            As for :meth:`to_dict`.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> text = symrot.load_scene("t_handle").with_(samples=11).to_toml()
+        >>> "samples = 11" in text
+        True
+        """
+        return toml_text(self._content())
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **values: Any) -> "Scene":
+        """Return the scene with other values; everything that follows from them is computed again.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Key -> value. A key is a path in the scene file, such as ``"body.mass"``, ``"torque[0].weight"`` or
+            ``"initial"``, or a short name:
+
+            - ``omega`` (rad/s, body components), ``omega_2``, ``omega_space``;
+            - ``attitude``: a quaternion, scalar first, a 3x3 matrix ``dcm_sb``, a rotation of SciPy, a pair such as
+              ``("ZXZ", [0.1, 0.2, 0.3])``, or a table;
+            - ``t`` ([start, stop], s), ``samples``, ``tolerance``, ``quantities``;
+            - ``principal`` and ``I_xx`` to ``I_yz``, kg m^2;
+            - the constants of torques, as in :func:`symrot.propagate_ensemble`;
+            - the mass, density and dimensions of a body that is one shape.
+        **values
+            More keys, where the key is a Python name: ``scene.with_(omega=[0, 1, 0], weight=2)``.
+
+        Raises
+        ------
+        InputError
+            If a key names nothing in the scene, or if the new scene is not valid.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> scene = symrot.load_scene("tumbling_prism")
+        >>> scene.with_({"body.mass": 2}, omega_3="1/3").initial.omega_b[2]
+        Fraction(1, 3)
+        """
+        if changes is not None and not isinstance(changes, Mapping):
+            raise InputError(f"expected a dict of new values by name, got {show(changes)}")
+        every = {**(changes or {}), **values}
+        last = {key: value for key, value in every.items() if replaces_shapes(key)}
+        first = {key: value for key, value in every.items() if key not in last}
+        shaped = self._changed(first) if first or not last else self
+        return shaped._changed(last) if last else shaped
+
+    def _changed(self, changes: Mapping[str, Any]) -> "Scene":
+        content = changed(self._content(), changes, self.initial.omega_b, self.body, self.torques)
+        assert self.origin is not None
+        return _read_scene(content, self.origin.label, self.name, self.path, self.origin.table_folders)
+
+    def _content(self) -> Content:
+        """Return the content of the scene; raise InputError if its body or torques were replaced after it was read."""
+        if self.origin is None or not all(
+            one is other for one, other in zip(self.origin.parts, _parts(self), strict=True)
+        ):
+            raise InputError(
+                f"{self.name}: expected a scene with the body and torques that were read, got one in which they were "
+                "replaced afterwards; write scene.with_(...) instead of dataclasses.replace"
+            )
+        first = self.origin.scene_values
+        replaced = {key: _WRITERS[key](now) for key, now in _values(self).items() if now is not first[key]}
+        return {**self.origin.content, **replaced}
 
 
-def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
-    """Return a shipped scene by its name, or a scene from the path of a TOML file.
+class _Origin(NamedTuple):
+    """What a scene was read from, and the values that were read, by which a later replacement is noticed."""
+
+    content: Content
+    label: str
+    table_folders: str | Path | Sequence[str | Path]
+    parts: tuple[Any, ...]
+    scene_values: Mapping[str, Any]
+
+    def has_parts_of(self, scene: Scene) -> bool:
+        """Return whether the body and the torques of a scene are those that were read."""
+        return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
+
+
+def _parts(scene: Scene) -> tuple[Any, ...]:
+    """Return the values that a content describes in many ways, such as a body by its shapes or by its moments."""
+    return scene.body, scene.torques, scene.table
+
+
+def _values(scene: Scene) -> dict[str, Any]:
+    """Return the other values, each of which follows from one table of the content, by the key of that table."""
+    return {
+        "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
+        "output": scene.output, "accuracy": scene.tolerance,
+    }  # fmt: skip
+
+
+def _output_content(output: Output) -> Content:
+    euler = {"sequence": output.sequence, "degrees": output.degrees} if "euler" in output.quantities else {}
+    return {"quantities": list(output.quantities), **euler}
+
+
+_WRITERS: dict[str, Callable[[Any], Any]] = {
+    "title": str,
+    "source": str,
+    "initial": lambda initial: {
+        "omega": list(initial.omega_b), "attitude": {"quaternion": list(initial.quaternion)},
+    },
+    "span": lambda span: {"t": [span.start, span.stop], "samples": span.samples},
+    "output": _output_content,
+    "accuracy": lambda tolerance: {"tolerance": tolerance},
+}  # fmt: skip
+"""Key of a table -> function that writes it from the value of the scene."""
+
+
+SceneSource = Scene | Mapping[str, Any] | str | Path
+"""What every function accepts as a scene: a scene, the content of a file as a dict, a shipped name, or a path."""
+
+
+def load_scene(source: SceneSource, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
+    """Return a shipped scene by its name, a scene from the path of a TOML file, or one from a dict.
 
     Parameters
     ----------
-    source : str or Path
-        Name of a shipped scene, or path of a file.
+    source : str, Path, mapping or Scene
+        Name of a shipped scene, path of a file, or the content of a file as for :meth:`Scene.from_dict`. A scene is
+        returned unchanged.
     table_folders : str, Path or sequence of them
         Folders, in addition to the folder of the scene, whose files a torque of kind table may name.
 
@@ -218,6 +397,10 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     >>> load_scene("tumbling_prism").body.principal.moments
     (Fraction(5, 1), Fraction(20, 1), Fraction(17, 1))
     """
+    if isinstance(source, Scene):
+        return source
+    if isinstance(source, Mapping):
+        return Scene.from_dict(source, table_folders=table_folders)
     path = find_scene(source)
     label = path.name if path.parent == SHIPPED else str(source)
     return _read_scene(read_toml(path, label), label, path.stem, str(path), table_folders)
@@ -387,7 +570,7 @@ def _read_scene(
     torques, samples = _read_torques(
         values["torque"], values["body"], values["span"], folder, f"{where}torque", table_folders
     )
-    return Scene(
+    scene = Scene(
         name=name,
         path=path,
         title=values["title"] or name.replace("_", " "),
@@ -400,3 +583,4 @@ def _read_scene(
         tolerance=values["accuracy"],
         table=samples,
     )
+    return replace(scene, origin=_Origin(dict(content), label, table_folders, _parts(scene), _values(scene)))

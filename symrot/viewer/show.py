@@ -10,7 +10,7 @@ from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Initial, Scene, load_scene
+from symrot.scene.scene import Initial, Scene, SceneSource, load_scene
 from symrot.viewer import film
 from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page
@@ -21,7 +21,7 @@ PAGES = (".html", ".htm")
 
 
 def show(
-    motion: Scene | Trajectory | str | Path,
+    motion: SceneSource | Trajectory,
     path: str | Path | None = None,
     progress: Callable[[int, int], object] = lambda done, all: None,
 ) -> Path:
@@ -109,7 +109,7 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
     return Initial((first, second, third), (a, b, c, d))
 
 
-def _scene_and_motion(motion: Scene | Trajectory | str | Path) -> tuple[Scene, Trajectory | None]:
+def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
     """Return the scene of a page, and the trajectory if the page must play it because its torque has no formula."""
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))

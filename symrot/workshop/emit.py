@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.errors import InputError
 from symrot.planning.general_structure import switched
 from symrot.planning.plan import Plan, make_plan
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 
 if TYPE_CHECKING:
     from symrot.workshop.kernel_text import KernelText
@@ -69,11 +68,11 @@ class Emitted(_Texts):
         return self.text.certificate(self.bounds)
 
 
-def _scene(source: Scene | str | Path) -> Scene:
+def _scene(source: SceneSource) -> Scene:
     return source if isinstance(source, Scene) else load_scene(source)
 
 
-def plan(scene: Scene | str | Path) -> Plan:
+def plan(scene: SceneSource) -> Plan:
     """Return the plan of a scene: each item that is computed or skipped, and why; :func:`explain` prints it as a table.
 
     Parameters
@@ -104,7 +103,7 @@ def plan(scene: Scene | str | Path) -> Plan:
     return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
 
 
-def explain(scene: Scene | str | Path) -> str:
+def explain(scene: SceneSource) -> str:
     """Return the plan of a scene as a table of text: item, computed or skipped, rule, derivation, operations saved.
 
     Parameters
@@ -132,7 +131,7 @@ def explain(scene: Scene | str | Path) -> str:
     return explanation(plan(scene))
 
 
-def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
+def emit(kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
     """Return the text of a library kernel, or of a scene's own kernel; it is the same on every machine.
 
     Parameters
