@@ -34,7 +34,11 @@ from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.report.output import save
 from symrot.report.plot import plot
 from symrot.results.saved import SavedTrajectory, load
-from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
+from symrot.scene.body import Body
+from symrot.scene.samples import Table
+from symrot.scene.scene import Scene, load_scene, shipped_scenes
+from symrot.scene.tables import Initial, Output, Span
+from symrot.scene.torque import Torque
 from symrot.viewer.show import in_notebook, show
 from symrot.workshop.certification import (
     Audit,

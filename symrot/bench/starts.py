@@ -177,7 +177,8 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return call, following + constants, more - constants
 
     assert parts is not None
-    starts: tuple[dict[str, Any], ...] = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
+    both: dict[str, Any] = {"omega": omega, "quaternion": quaternion}
+    starts = ({"omega": omega}, {"quaternion": quaternion}, both)
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),

@@ -19,7 +19,8 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.results.samples import MotionSamples
-from symrot.scene.scene import QUANTITIES, TOLERANCES, Scene, SceneSource, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import QUANTITIES, TOLERANCES
 
 __all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"]
 

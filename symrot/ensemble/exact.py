@@ -21,7 +21,7 @@ from symrot.closed_form.registry import ClosedForm, Exact, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.errors import InputError
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch

@@ -24,7 +24,8 @@ from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 

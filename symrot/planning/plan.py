@@ -23,7 +23,8 @@ from symrot.planning.rules import (
     pattern,
     small_components,
 )
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["START_CONSTANTS", "STATES", "Plan", "make_plan", "structure_key"]
 

@@ -34,7 +34,8 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["ExternallyDrivenPropagator"]
 

@@ -34,7 +34,7 @@ from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording, Stats
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations

@@ -160,7 +160,7 @@ def _longest_step(max_step: float) -> float:
 
 
 def _tolerance(tolerance: float) -> float:
-    from symrot.scene.scene import TOLERANCES
+    from symrot.scene.tables import TOLERANCES
 
     low, high = TOLERANCES
     value = float(number.read(tolerance, "tolerance"))

@@ -23,7 +23,8 @@ from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.attitude import read_attitude
 from symrot.scene.content import plain
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["Propagator", "read_start"]
 

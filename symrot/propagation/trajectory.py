@@ -18,7 +18,8 @@ from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
 from symrot.results.samples import MotionSamples
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["Invariant", "Trajectory"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from symrot.dynamics.structure import Structure
 from symrot.planning.plan import Plan
 from symrot.report.layout import apart, columns, one_line, room
-from symrot.scene.scene import QUANTITIES
+from symrot.scene.tables import QUANTITIES
 
 if TYPE_CHECKING:
     from symrot.report.records import PlanReport, PlanRow

@@ -10,7 +10,8 @@ from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Initial, Scene, SceneSource, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import Initial
 from symrot.viewer import film
 from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page

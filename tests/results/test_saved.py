@@ -12,7 +12,7 @@ import pytest
 import symrot
 from symrot.cli.main import main
 from symrot.errors import InputError
-from symrot.scene.scene import QUANTITIES, Output
+from symrot.scene.tables import QUANTITIES, Output
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 EVENTS = ["omega_3 == 0", {"formula": "omega_1 - 100"}]

@@ -27,7 +27,7 @@ from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
 from symrot.kinematics.hamilton import hamilton
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["Frame", "Top", "motion", "starts"]
 

@@ -29,7 +29,7 @@ from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.closed_form.spin_up.compiled import Compiled
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up.integers import Integers
