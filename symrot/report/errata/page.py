@@ -94,7 +94,7 @@ def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
     grouped: dict[str, dict[str, list[str]]] = {}
     for item in items:
         joint = " or " if item.verdict.verdict == "conditional" else " and "
-        words = joint.join(map(condition_words, item.conditions))
+        words = item.words or joint.join(map(condition_words, item.conditions))
         grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(f"`{item.claim['id']}`")
     for words, places in grouped.items():
         listed = "; ".join(f"{where}: {', '.join(names)}" for where, names in places.items())
