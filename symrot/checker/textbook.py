@@ -53,6 +53,8 @@ class Finding:
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
         The trees of the claim by place, and the corrected trees.
+    is_proposed : bool
+        Whether the corrected formula was proposed by a person, and not found by the search for repairs.
     conditions : tuple of str
         Conditions that the document does not state, and that quantities with their usual signs may break. A true
         formula needs all of these conditions; a conditional formula needs any one of them.
@@ -67,6 +69,7 @@ class Finding:
     right: str = ""
     parts: Mapping[str, Node] = field(default_factory=dict)
     corrected: Mapping[str, Node] = field(default_factory=dict)
+    is_proposed: bool = False
     conditions: tuple[str, ...] = ()
     words: str = ""
 
@@ -128,7 +131,7 @@ def finding_of(
     )
     right = " with ".join(f"{text(tree)}" if place in ("left", "right") else f"{place} = {text(tree)}"
                           for place, tree in corrected.items())  # fmt: skip
-    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected)
+    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected, bool(proposal))
 
 
 def _may_be_broken(condition: str) -> bool:

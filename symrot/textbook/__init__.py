@@ -30,7 +30,7 @@ LINE_KINDS = {
     "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
     "other": "the title of another document",
 }
-"""Kind of a line that states no formula of its own -> its description. The first four kinds name the claim that does."""
+"""Kind of a line that states no formula of its own -> its description. The first four kinds name a claim."""
 
 
 class Document(NamedTuple):
