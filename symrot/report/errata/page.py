@@ -65,7 +65,7 @@ def _blocks(survey: Survey) -> Iterator[Block]:
         for entry in errors_of_document:
             number += 1
             yield from _of_entry(number, entry)
-        yield from _of_conditions([item for item in items if item.outcome == "conditional"])
+        yield from _of_conditions(source.name, [item for item in items if item.outcome == "conditional"])
         yield from _of_extraction([item for item in items if item.outcome in ("other reading", "fails or lost")])
 
 
@@ -85,8 +85,11 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
         yield Block("extracted", line)
 
 
-def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the list of conditions without which formulas of a document do not hold."""
+def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
+    """Yield the list of conditions without which formulas of a document do not hold.
+
+    A formula is named by the id of its claim, in words and without the name of the document.
+    """
     if not items:
         return
     yield Block("entry", "Conditions left out")
@@ -95,10 +98,12 @@ def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
     for item in items:
         joint = " or " if item.verdict.verdict == "conditional" else " and "
         words = item.words or joint.join(map(condition_words, item.conditions))
-        grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(f"`{item.claim['id']}`")
+        grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(
+            str(item.claim["id"]).removeprefix(f"{document_name}-").replace("-", " ")
+        )
     for words, places in grouped.items():
         listed = "; ".join(f"{where}: {', '.join(names)}" for where, names in places.items())
-        yield Block("item", f"{words} -- {listed}")
+        yield Block("item", f"{words}. Where: {listed}.")
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
