@@ -109,21 +109,20 @@ def finding_of(
     readings = tuple(other for other in claim.alternatives if _is_reading(claim, other, lost))
     claim = replace(claim, alternatives=readings)
     verdict, other = check_readings(claim, repair)
+    listed, words = ((), "") if condition is None else (condition.hypotheses, condition.words)
     if verdict:
-        listed = () if condition is None else condition.given
         broken = tuple(text for text in verdict.conditions if text in listed or _may_be_broken(text))
-        words = "" if condition is None else condition.words
         return Finding(data, verdict, "conditional" if broken else "holds", conditions=broken, words=words)
     if other is not None:
         return Finding(data, verdict, "other reading", other.text, other.text)
     if verdict.verdict != "false":
         outcome = "conditional" if verdict.verdict == "conditional" else "undecided"
-        return Finding(data, verdict, outcome, conditions=verdict.requires)
+        return Finding(data, verdict, outcome, conditions=verdict.requires, words=words)
     if claim.relation is None:
         return Finding(data, verdict, "fails", right=rounded_value(claim))
     if condition is not None:
         _prove(claim, condition)
-        return Finding(data, verdict, "conditional", conditions=condition.given, words=condition.words)
+        return Finding(data, verdict, "conditional", conditions=listed, words=words)
     parts = {"left": claim.relation[1], "right": claim.relation[2], **dict(claim.define)}
     corrected = _correction(claim, verdict, proposal)
     is_loss = corrected and all(
@@ -153,10 +152,10 @@ def _may_be_broken(condition: str) -> bool:
 def _prove(claim: Claim, condition: Condition) -> None:
     """Raise InputError for a condition under which the exact engine does not prove the claim."""
     declared = Declared({*claim.symbols, *(name for name, _ in claim.define)}, claim.functions)
-    given = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.given)
-    if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *given)).equation).verdict != "true":
+    hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
+    if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
         raise InputError(
-            f"{claim.id}: condition: expected one under which the claim is true, got {' and '.join(condition.given)!r}"
+            f"{claim.id}: condition: expected one under which the claim is true, got {' and '.join(condition.hypotheses)!r}"
         )
 
 

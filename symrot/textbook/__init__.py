@@ -71,7 +71,7 @@ class Condition(NamedTuple):
     """A condition that a document does not state: the claim that holds under it, its formulas, and its words."""
 
     claim: str
-    given: tuple[str, ...]
+    hypotheses: tuple[str, ...]
     words: str
 
 
