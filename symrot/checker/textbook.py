@@ -154,9 +154,8 @@ def _prove(claim: Claim, condition: Condition) -> None:
     declared = Declared({*claim.symbols, *(name for name, _ in claim.define)}, claim.functions)
     hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
     if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
-        raise InputError(
-            f"{claim.id}: condition: expected one under which the claim is true, got {' and '.join(condition.hypotheses)!r}"
-        )
+        texts = " and ".join(condition.hypotheses)
+        raise InputError(f"{claim.id}: condition: expected one under which the claim is true, got {texts!r}")
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
