@@ -10,6 +10,7 @@ from functools import cache
 
 from sympy import Expr, ImmutableMatrix, Matrix, S, Set, factor_terms
 
+import symrot
 from symrot import symbols
 from symrot.conventions import SEQUENCES, parse_sequence
 from symrot.kinematics.chart import Limit, SingularSet
@@ -49,7 +50,7 @@ class LockedPoint:
         return first - third * self.silent_rates[0] / self.silent_rates[2]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SingularityDossier:
     """The singularities of an Euler sequence: where gimbal lock occurs, the lost axis there, and regular sequences.
 
@@ -127,6 +128,12 @@ class SingularityDossier:
         )
 
     __str__ = text
+
+    def __repr__(self) -> str:
+        return f"<SingularityDossier of {self.sequence}>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
 
     def _locked_text(self, point: LockedPoint) -> Iterable[str]:
         middle = self.singular_set.variable

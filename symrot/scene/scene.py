@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import symrot
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
@@ -27,7 +28,7 @@ __all__ = ["Scene", "SceneSource", "load_scene", "shipped_scenes"]
 MOST_TORQUES = 100
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """A rigid body, its initial state, the torques on it, and the requested output. All numbers are exact.
 
@@ -72,6 +73,12 @@ class Scene:
     tolerance: Fraction
     table: Table | None = None  # a torque given by samples, in addition to the torques given by formulas
     origin: "_Origin | None" = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {self.title}, {float(self.span.start):g} to {float(self.span.stop):g} s>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:

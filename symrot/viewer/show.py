@@ -16,7 +16,7 @@ from symrot.viewer import film
 from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page
 
-__all__ = ["PAGES", "in_notebook", "show"]
+__all__ = ["PAGES", "in_frame", "show"]
 
 PAGES = (".html", ".htm")
 
@@ -74,30 +74,8 @@ def show(
     return target
 
 
-def in_notebook(trajectory: Trajectory) -> str:
-    """Return the HTML that shows a trajectory in a notebook: its page, in a frame of its own.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A motion; a notebook calls this function through ``Trajectory._repr_html_``.
-
-    Returns
-    -------
-    str
-        An ``iframe`` that holds the whole page.
-
-    Raises
-    ------
-    InputError
-        For a trajectory without attitude under a torque without a formula.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> symrot.in_notebook(symrot.propagate("t_handle")).startswith("<iframe")
-    True
-    """
+def in_frame(trajectory: Trajectory) -> str:
+    """Return the HTML that shows a trajectory in a notebook: an ``iframe`` that holds its whole page."""
     text = escape(page(*_scene_and_motion(trajectory)), quote=True)
     return f'<iframe srcdoc="{text}" style="width:100%;height:760px;border:0" title="motion"></iframe>'
 
