@@ -79,7 +79,7 @@ def _functions(formulas: Sequence[Expr]) -> set[Expr]:
 
 
 def _level(node: Expr) -> int:
-    """Return how many functions are inside each other in the arguments of a function."""
+    """Return how deeply functions are nested in the arguments of a function."""
     return max(map(_depth, node.args))
 
 

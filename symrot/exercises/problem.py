@@ -1,4 +1,4 @@
-"""What a template returns: a problem in symbols, with its laws as equations and the ranges of its numbers."""
+"""Problems in symbols, as templates return them: statement, law, equations of the solution, and possible numbers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ __all__ = ["Asked", "Line", "Problem", "Quantity", "Template", "chain", "quantit
 
 @dataclass(frozen=True)
 class Quantity:
-    """A symbol with the numbers that it may have, as texts such as ``"0.4"`` or ``"2/3"``, in a unit.
+    """A symbol, its unit, and the numbers that it may have, as texts such as ``"0.4"`` or ``"2/3"``.
 
     Attributes
     ----------
@@ -31,17 +31,17 @@ class Quantity:
 
 
 def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
-    """Return a quantity whose numbers are written in one text, with spaces between them."""
+    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers, separated by spaces."""
     return Quantity(symbol, tuple(numbers.split()), unit, words)
 
 
 def written_sum(*terms: Any) -> Expr:
-    """Return a sum whose terms stay apart on the page: ``m*R**2/2 + m*R**2``."""
+    """Return a SymPy sum that is not simplified, so that it is printed as it is: ``m*R**2/2 + m*R**2``."""
     return Add(*terms, evaluate=False)
 
 
 def written_product(*factors: Any) -> Expr:
-    """Return a product whose factors stay apart on the page."""
+    """Return a SymPy product that is not simplified, so that it is printed factor by factor."""
     return Mul(*factors, evaluate=False)
 
 
@@ -69,7 +69,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Asked:
-    """A quantity that the exercise asks for.
+    """A quantity that a question of the exercise asks for.
 
     Attributes
     ----------
@@ -97,14 +97,14 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return the lines that lead from a law to a result: the law as it is written, and the result if that differs."""
+    """Return solution lines: first the law as written, then, if it differs, the simplified result."""
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A problem in symbols.
+    """An exercise before its quantities get numbers.
 
     Attributes
     ----------

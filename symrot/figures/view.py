@@ -17,7 +17,7 @@ Points = ArrayLike | Sequence[Any]
 
 @dataclass(frozen=True)
 class View:
-    """Orthographic view of space: axis 3 of space is drawn upward.
+    """An orthographic view of space in which axis 3 points upward.
 
     Attributes
     ----------
@@ -49,25 +49,25 @@ class View:
         return eye
 
     def project(self, points: Points) -> Floats:
-        """Return the places of points of shape (n, 3) in the picture, shape (n, 2)."""
+        """Return the positions in the picture, shape (n, 2), of points in space, shape (n, 3)."""
         right, up, _ = self.axes @ np.atleast_2d(np.asarray(points, dtype=float)).T
         return np.stack([self.origin[0] + self.scale * right, self.origin[1] - self.scale * up], axis=1)
 
     def at(self, x: float, y: float) -> "View":
-        """Return the same view with its origin at another place of the picture."""
+        """Return the same view with its origin at the picture position (x, y)."""
         return replace(self, origin=(x, y))
 
 
 @dataclass(frozen=True)
 class Plane:
-    """View of a plane: x to the right, y upward, each with a scale of its own."""
+    """A view of a plane, with x to the right and y upward, each with its own scale."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)
     scale_y: float | None = None
 
     def project(self, points: Points) -> Floats:
-        """Return the places of points of shape (n, 2) in the picture, shape (n, 2)."""
+        """Return the positions in the picture, shape (n, 2), of points of the plane, shape (n, 2)."""
         x, y = np.atleast_2d(np.asarray(points, dtype=float)).T
         scale_y = self.scale if self.scale_y is None else self.scale_y
         return np.stack([self.origin[0] + self.scale * x, self.origin[1] - scale_y * y], axis=1)

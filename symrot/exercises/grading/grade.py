@@ -1,4 +1,4 @@
-"""The function ``grade``, and the files of answers that the command reads."""
+"""The function ``grade``, and the grading of answers in files for the command ``symrot grade``."""
 
 import json
 import re
@@ -21,7 +21,7 @@ KINDS: dict[str, Callable[[str, str, Question], Mark]] = {"number": mark_number,
 
 
 def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequence[str]) -> Grades:
-    """Return the marks of answers to one exercise or to a sheet.
+    """Return the marks for answers to one exercise or to a sheet of exercises.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _mark(key: str, answer: Any, question: Question) -> Mark:
 
 
 def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
-    """Return the marks of a file of answers to the exercises of a JSON file.
+    """Return the marks for a file of answers to the exercises in a JSON file.
 
     Parameters
     ----------
