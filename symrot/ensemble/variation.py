@@ -139,7 +139,10 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants, if nearly doubles, that do not vary in the field of the constant ``name``."""
+        """Return the fixed constants of the field to which the varying constant ``name`` belongs.
+
+        Constants that are not equal to a double within 2^-200 are left out.
+        """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}

@@ -246,7 +246,7 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
         if best is None or length < best[0]:
             best = length, drawn
     if best is None:
-        raise ProofError(f"{problem.title}: none of {DRAWS} draws of numbers fits the problem")
+        raise ProofError(f"{problem.title}: expected numbers that suit the problem, got none in {DRAWS} random choices")
     return best[1]
 
 

@@ -160,7 +160,7 @@ TEETH = {"sun": 24, "planet": 12, "ring": 48}
 def _gear(
     picture: Picture, plane: Plane, centre: Floats, teeth: int, start: float, style: str, inner: bool = False
 ) -> None:
-    """Draw a gear with square teeth; its pitch radius is 0.01 times half its number of teeth."""
+    """Draw the outline of a gear, filled unless ``inner``; its pitch radius in the plane is ``teeth/24``."""
     angles = start + np.linspace(0, 2 * np.pi, teeth * 12 + 1)
     radius = teeth / 24 + 0.028 * np.tanh(4 * np.sin(teeth * (angles - start)))
     points = centre + radius[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)

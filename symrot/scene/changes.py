@@ -65,7 +65,7 @@ class Place(NamedTuple):
 
 
 class _Scene(NamedTuple):
-    """The parts of a scene that a change looks at: its content, and the exact values that were read from it."""
+    """The content of a scene to be changed, and the exact values that were read from this content."""
 
     content: Content
     omega_b: Sequence[Fraction]

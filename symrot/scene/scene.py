@@ -227,7 +227,7 @@ class Scene:
 
 
 class _Origin(NamedTuple):
-    """What a scene was read from, and the values that were read, by which a later replacement is noticed."""
+    """The content from which a scene was read, and the objects that were read, to notice if one is replaced later."""
 
     content: Content
     label: str
@@ -241,12 +241,12 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the values that a content describes in many ways, such as a body by its shapes or by its moments."""
+    """Return the body and the torques of a scene, for each of which scene files have several notations."""
     return scene.body, scene.torques, scene.table
 
 
 def _values(scene: Scene) -> dict[str, Any]:
-    """Return the other values, each of which follows from one table of the content, by the key of that table."""
+    """Return the other values of a scene, each with the key of the table in the scene file that gives it."""
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
         "output": scene.output, "accuracy": scene.tolerance,

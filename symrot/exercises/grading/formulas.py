@@ -117,7 +117,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     text = answer.strip().strip("$").strip()
     *names, formula = re.split(r"==?|:=", text)
     if len(names) > 1 or not formula.strip():
-        raise InputError(f"expected one formula for ${question.name}$, got {answer[:60]!r}")
+        raise InputError(f"expected one formula for ${question.name}$ with at most one '=', got {answer[:60]!r}")
     if "\\" in formula:
         return formula, question.latex
     bare = re.sub(r"\{([^{}]*)\}", r"\1", re.sub(r"\^\{([^{}]*)\}", r"^(\1)", formula))
@@ -127,7 +127,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     unknown = sorted({name for name in _NAME.findall(plain) if name not in known})
     if unknown:
         letters = ", ".join(name for name in question.symbols if name in _NAME.findall(question.answer))
-        raise InputError(f"expected a formula in {letters}, got one with {', '.join(unknown)}")
+        raise InputError(f"expected a formula in {letters}, got a formula that contains {', '.join(unknown)}")
     return f"1*({plain})" if re.fullmatch(r"\s*\w+\s*", plain) else plain, question.answer
 
 

@@ -49,14 +49,18 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     """
     questions = dict(_keyed(exercises))
     if isinstance(answers, str):
-        raise InputError("answers: expected a mapping or a list of texts, got one text")
+        raise InputError(
+            f"answers: expected a list of texts, or a mapping from question to text, got the text {answers[:60]!r}"
+        )
     if not isinstance(answers, Mapping):
         if len(answers) > len(questions):
-            raise InputError(f"answers: expected at most {len(questions)}, one for each question, got {len(answers)}")
+            raise InputError(
+                f"answers: expected at most {len(questions)} texts, one for each question, got {len(answers)}"
+            )
         answers = dict(zip(questions, answers, strict=False))
     unknown = [key for key in answers if key not in questions]
     if unknown:
-        raise InputError(f"answers: expected the questions {', '.join(questions)}, got {unknown[0]!r}")
+        raise InputError(f"answers: expected names among the questions {', '.join(questions)}, got {unknown[0]!r}")
     return Grades(tuple(_mark(key, answers.get(key), question) for key, question in questions.items()))
 
 
@@ -103,7 +107,8 @@ def _answers(path: str | Path, text: str) -> dict[str, str]:
         match = re.match(r"\s*\(?(\d+[a-z])\)?\s*[:)]\s*(.*)$", line)
         if match is None:
             raise InputError(
-                f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3'"
+                f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3', "
+                f"got {line.strip()[:60]!r}"
             )
         answers[match[1]] = match[2]
     return answers

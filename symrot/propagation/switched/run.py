@@ -499,7 +499,10 @@ class SwitchedRun(RunState):
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
-                    self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end
+                    self.t,
+                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for functions "
+                    "of a sign, such as sign and step, not for floor and mod",
+                    self.end,
                 )
         for other in asleep - self._asleep():
             self._wake(other)
@@ -547,7 +550,11 @@ class SwitchedRun(RunState):
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
-            raise IntegrationStopped(self.t, "a motion that slides along a switch has more than one past", self.end)
+            raise IntegrationStopped(
+                self.t,
+                "a motion that slides along a switch cannot be followed backward: it has more than one past",
+                self.end,
+            )
         mode, _ = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
@@ -605,7 +612,7 @@ class SwitchedRun(RunState):
             raise IntegrationStopped(
                 self.t,
                 f"the motion would slide along {self._names_of_held()}, but not in exactly one way: "
-                "none or several sliding motions fit",
+                "the equations have no such motion, or several",
                 self.end,
             ) from None
 
@@ -650,7 +657,10 @@ class SwitchedRun(RunState):
             if float(np.abs(rest).max()) <= PARALLEL * size:
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
-                    self.t, f"the motion would slide along {functions}, but not in exactly one way", self.end
+                    self.t,
+                    f"the motion would slide along {functions}, but not in exactly one way: the equations do not "
+                    f"determine the value of {self._name(mode)}",
+                    self.end,
                 )
 
     def _count(self) -> None:
