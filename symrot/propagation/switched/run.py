@@ -500,8 +500,8 @@ class SwitchedRun(RunState):
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for functions "
-                    "of a sign, such as sign and step, not for floor and mod",
+                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for "
+                    "functions of a sign, such as sign and step, not for floor and mod",
                     self.end,
                 )
         for other in asleep - self._asleep():
