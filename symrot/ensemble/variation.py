@@ -363,7 +363,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return the places of all constants that may vary in a scene, by their names in the plan."""
+    """Return, for each constant that may vary in a scene, its place there, by the name of the constant in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):

@@ -39,9 +39,13 @@ class Datum:
     symbol : str
         Its letter as answers write it.
     latex : str
+        The symbol as LaTeX.
     value : str
+        The number as text, such as ``"0.4"`` or ``"2/3"``.
     unit : str
+        The unit of the number; empty for a pure number.
     words : str
+        The meaning of the symbol, such as ``"length"``.
 
     Examples
     --------
@@ -78,6 +82,7 @@ class Question:
     decimal : str
         The number with 17 digits; empty for a formula.
     unit : str
+        The unit of the answer; empty for a pure number.
     symbols : dict of str to str
         Symbols that the formula may use, with their units.
     positive : tuple of str
@@ -112,7 +117,9 @@ class Equation:
     Attributes
     ----------
     reason : str
+        The reason why the equation holds, one sentence.
     latex : str
+        The equation as LaTeX.
 
     Examples
     --------
@@ -132,14 +139,19 @@ class Exercise:
     Attributes
     ----------
     template, topic : str
+        The name of the template from which the exercise was made, and its topic.
     seed : int
+        The seed of the random numbers.
     title, statement : str
         Markdown.
     data : tuple of Datum
+        The given quantities with their values.
     questions : tuple of Question
+        The questions, in order.
     hints : tuple of 3 str
         Which law; the law as an equation; the equation with numbers.
     solution : tuple of Equation
+        The lines of the solution, in order.
     figure : str
         SVG, or empty.
 

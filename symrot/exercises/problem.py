@@ -17,7 +17,9 @@ class Quantity:
     Attributes
     ----------
     symbol : Symbol
+        The symbol in the formulas of the problem.
     numbers : tuple of str
+        The numbers from which one is chosen at random.
     unit : str
         A unit that :mod:`symrot.checker.units.conversion` knows; empty for a pure number.
     words : str
@@ -54,6 +56,7 @@ class Line:
     claim : str
         The reason, a sentence.
     left, right : Expr or Matrix
+        The two sides of the equation.
     named : str
         LaTeX to display for the left side, if that has a name.
     relations : tuple of Expr
@@ -109,14 +112,17 @@ class Problem:
     Attributes
     ----------
     title : str
+        A short title of the exercise.
     statement : str
         The text of the exercise, Markdown with formulas in ``$``.
     law : str
         The first hint: which law answers the question.
     quantities : tuple of Quantity
+        The given quantities.
     lines : tuple of Line
         The equations of the solution. The second hint shows the first of them.
     asked : tuple of Asked
+        The quantities that the questions ask for.
     fits : callable
         Whether numbers, by symbol in SI units, make sense together.
     figure : str

@@ -21,6 +21,7 @@ class ExerciseSheet:
     Attributes
     ----------
     exercises : tuple of Exercise
+        The exercises, in order.
 
     Examples
     --------

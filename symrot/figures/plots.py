@@ -14,6 +14,7 @@ class Axes:
     Parameters
     ----------
     picture : Picture
+        The picture to which the plot is added.
     x, y : (float, float)
         The limits of the two variables.
     size : (float, float)

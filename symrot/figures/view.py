@@ -36,7 +36,7 @@ class View:
 
     @cached_property
     def axes(self) -> Floats:
-        """The directions right, up, and toward the eye, as rows of an orthogonal matrix."""
+        """The directions right, up, and toward the viewer, as rows of an orthogonal matrix."""
         a, e = np.radians(self.azimuth), np.radians(self.elevation)
         toward = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
         right = np.array([-np.sin(a), np.cos(a), 0.0])
@@ -44,7 +44,7 @@ class View:
 
     @property
     def toward(self) -> Floats:
-        """The unit vector toward the eye."""
+        """The unit vector from the origin toward the viewer."""
         eye: Floats = self.axes[2]
         return eye
 

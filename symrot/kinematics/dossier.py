@@ -56,6 +56,7 @@ class SingularityDossier:
     Attributes
     ----------
     sequence : str
+        The Euler sequence, such as ``"ZXZ"``.
     jacobian_b, jacobian_s : EulerRateMatrix
         B of ``omega = B dq/dt`` in body and space components.
     locked : tuple of LockedPoint

@@ -132,7 +132,7 @@ def _set(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _place(scene: _Scene, key: str) -> Place:
-    """Return the place that a key names; raise InputError if there is none, or if there are several."""
+    """Return the place in the scene's content that a key names; raise InputError if there is none or more than one."""
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")
     if key in SHORT:

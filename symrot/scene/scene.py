@@ -236,7 +236,7 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether the body and the torques of a scene are those that were read."""
+        """Return whether a scene still has the body and the torques that were read from its content."""
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
@@ -246,7 +246,7 @@ def _parts(scene: Scene) -> tuple[Any, ...]:
 
 
 def _values(scene: Scene) -> dict[str, Any]:
-    """Return the other values of a scene, each with the key of the table in the scene file that gives it."""
+    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file."""
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
         "output": scene.output, "accuracy": scene.tolerance,

@@ -53,7 +53,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return (sign, formula tree) for a constant coefficient times a part with variables."""
+        """Return (sign, formula tree) of the product of a constant coefficient and a part with variables."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core

@@ -26,6 +26,7 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     Parameters
     ----------
     exercises : Exercise or ExerciseSheet
+        The exercise, or the sheet of exercises, that was answered.
     answers : mapping of str to str, or sequence of str
         Answers by question, ``"a"`` of an exercise and ``"1a"`` of a sheet; or one answer for each question in order.
         Numbers have a unit and at least two significant digits; formulas are typed text or LaTeX.

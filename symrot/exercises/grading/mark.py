@@ -17,6 +17,7 @@ class Mark:
     key : str
         The question, such as ``"1a"`` or ``"a"``.
     answer : str
+        The answer as the student wrote it.
     outcome : str
         ``"right"``, ``"wrong"``, ``"unread"`` (the answer cannot be read), ``"undecided"`` or ``"missing"``.
     credit : Fraction
@@ -57,6 +58,7 @@ class Grades:
     Attributes
     ----------
     marks : tuple of Mark
+        One mark for each question, in the order of the questions.
 
     Examples
     --------

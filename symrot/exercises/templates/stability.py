@@ -91,7 +91,7 @@ def swing_about_smallest(random: Random) -> Problem:
 
 
 def thrown_book(random: Random) -> Problem:
-    """Return a problem that asks how fast a disturbance grows of a book thrown with spin about its middle axis."""
+    """Return a problem about a book thrown with spin about its middle axis: how fast does a disturbance grow?"""
     inertia = solid("box").inertia
     moments = {A: inertia[0, 0], B: inertia[1, 1], C: inertia[2, 2]}
     square = _factor(1).subs(moments, simultaneous=True)
