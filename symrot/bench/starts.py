@@ -168,7 +168,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return the microseconds of a call, of the motion itself, and of the rest of the call."""
+        """Return three times in microseconds: of a call, of the motion in it, and of the rest of the call."""
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
         own.follow(times, True)

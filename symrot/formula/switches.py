@@ -269,7 +269,10 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a part of a ``where`` as a smooth formula; its switches matter only if ``share`` equals ``value``."""
+        """Return the value part of a ``where`` as a smooth formula.
+
+        Its switches affect the motion only if the formula ``share`` equals ``value``.
+        """
         outside = self.conditions
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)

@@ -23,7 +23,7 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant times a core, the part that contains variables, and collects the constants.
+    """A splitter of expressions into a constant factor, which it collects, and a core, which contains the variables.
 
     Parameters
     ----------

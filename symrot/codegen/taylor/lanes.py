@@ -107,7 +107,7 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return the system in which products that occur together in several sums are replaced by one sum of them."""
+    """Return a system in which products that occur together in several sums form one sum of their own."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]

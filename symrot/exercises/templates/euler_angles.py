@@ -19,7 +19,7 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return those of the angles and rates, as quantities with numbers, that occur in the given formulas."""
+    """Return the angles and rates that occur in the given formulas, as quantities with possible numbers."""
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(

@@ -91,7 +91,7 @@ def swing_about_smallest(random: Random) -> Problem:
 
 
 def thrown_book(random: Random) -> Problem:
-    """Return a problem about a book thrown with spin about its middle axis: how fast does a disturbance grow?"""
+    """Return a problem that asks for the growth rate of a disturbance of a book that spins about its middle axis."""
     inertia = solid("box").inertia
     moments = {A: inertia[0, 0], B: inertia[1, 1], C: inertia[2, 2]}
     square = _factor(1).subs(moments, simultaneous=True)
