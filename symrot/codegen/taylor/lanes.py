@@ -18,7 +18,7 @@ from symrot.formula.tree import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
-MOST_USES = (1, 2)  # a product in at most so many sums is computed in each; the faster of both layouts is used
+MOST_USES = (1, 2)  # a product in at most this many sums is computed in each of them; the faster layout is used
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 

@@ -469,7 +469,9 @@ class SwitchedRun(RunState):
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
-                self.t, f"the motion slides along {self._names_of_held()}, but nearby motions lead away", self.end
+                self.t,
+                f"the motion slides along {self._names_of_held()}, but nearby motions lead away from it",
+                self.end,
             )
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
