@@ -57,6 +57,7 @@ class SingularityDossier:
     Attributes
     ----------
     sequence : str
+        The Euler sequence, such as ``"ZXZ"``.
     jacobian_b, jacobian_s : EulerRateMatrix
         B of ``omega = B dq/dt`` in body and space components.
     locked : tuple of LockedPoint
@@ -193,7 +194,7 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return where an Euler sequence has gimbal lock, the axes lost there, and the sequences that are regular there.
+    """Return the singularities of an Euler sequence: gimbal lock, the lost axes, and sequences regular there.
 
     Parameters
     ----------

@@ -45,6 +45,7 @@ class Propagator:
     Attributes
     ----------
     scene : Scene
+        The scene whose motion is computed.
     tolerance : float
         Error of the trajectory to aim for.
 

@@ -234,7 +234,7 @@ class Scene:
 
 
 class _Origin(NamedTuple):
-    """What a scene was read from, and the values that were read, by which a later replacement is noticed."""
+    """The content from which a scene was read, and the objects that were read, to notice if one is replaced later."""
 
     content: Content
     label: str
@@ -243,17 +243,17 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether the body and the torques of a scene are those that were read."""
+        """Return whether a scene still has the body and the torques that were read from its content."""
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the values that a content describes in many ways, such as a body by its shapes or by its moments."""
+    """Return the body and the torques of a scene, for each of which scene files have several notations."""
     return scene.body, scene.torques, scene.table
 
 
 def _values(scene: Scene) -> dict[str, Any]:
-    """Return the other values, each of which follows from one table of the content, by the key of that table."""
+    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file."""
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
         "output": scene.output, "accuracy": scene.tolerance,

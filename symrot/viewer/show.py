@@ -26,7 +26,9 @@ def show(
     path: str | Path | None = None,
     progress: Callable[[int, int], object] = lambda done, all: None,
 ) -> Path:
-    """Write a motion as one offline page of HTML that computes it, plays it and lets readers change it; or as a film.
+    """Write a motion as one offline HTML page that computes and plays it, or as a film.
+
+    Readers can change the motion in the page.
 
     Parameters
     ----------
@@ -81,7 +83,7 @@ def in_frame(trajectory: Trajectory) -> str:
 
 
 def _state_at(scene: Scene, time: Fraction) -> Initial:
-    """Return the state of a scene's motion at a time, from which a page begins."""
+    """Return the state of a scene's motion at a given time, s: the initial state of a page that starts then."""
     state = propagator(with_attitude(scene))([float(time)])
     first, second, third = map(Fraction, state.omega[0].tolist())
     a, b, c, d = map(Fraction, state.quaternion[0].tolist())
@@ -89,7 +91,10 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
 
 
 def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
-    """Return the scene of a page, and the trajectory if the page must play it because its torque has no formula."""
+    """Return the scene of a page, and the trajectory to play if the page cannot compute it, else None.
+
+    A page plays a trajectory if a torque without a formula acts.
+    """
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))
         if start == stop:
