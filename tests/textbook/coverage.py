@@ -104,11 +104,11 @@ def is_covered(piece: str, printed: str, numbers: set[str]) -> bool:
 
 def reference_pieces() -> dict[str, list[Piece]]:
     """Return the pieces of each document as they were written by ``--write``."""
-    found: dict[str, list[Piece]] = {name: [] for name in DOCUMENTS}
+    by_document: dict[str, list[Piece]] = {name: [] for name in DOCUMENTS}
     for line in PIECES.read_text(encoding="utf-8").splitlines():
         name, number, piece = line.split(":", 2)
-        found[name].append((int(number), piece))
-    return found
+        by_document[name].append((int(number), piece))
+    return by_document
 
 
 def uncovered(name: str, every: Sequence[Piece]) -> list[Piece]:
