@@ -9,9 +9,8 @@ import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import cache
-from itertools import combinations, permutations
+from itertools import chain
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
@@ -20,7 +19,8 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
-from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
+from symrot.checker.recognition.moments import is_shifted_moment, is_symmetric_body
+from symrot.checker.recognition.pairing import absent_name, is_fitting, renamings, strangeness
 from symrot.checker.recognition.parts import (
     LACKING,
     Change,
@@ -34,17 +34,18 @@ from symrot.checker.recognition.parts import (
     multiples,
     near,
     parts,
-    rational,
     values_of,
     variants,
 )
+from symrot.checker.recognition.renaming import is_consistent
+from symrot.checker.recognition.solved_relations import solved_relations
 from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import UndefinedValue, points
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 from symrot.checker.units.units import read_unit
 
-__all__ = ["Near", "near_formulas"]
+__all__ = ["Near", "is_atom", "near_formulas"]
 
 MOST_DRAWS = 40
 """The most random points that are drawn to find some where a formula has a value."""
@@ -56,8 +57,6 @@ MOST_NODES = 500
 """The most symbols and operations of a formula that is searched."""
 FEW = 3
 """The most symbols of a known formula with an angle that a claim without angles may mean."""
-EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
-"""Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
 SQUARED = ", squared"
 TIME = Node("name", "t")
 
@@ -66,9 +65,9 @@ class Near(NamedTuple):
     """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
 
     ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
-    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, like one about a parallel axis. If
-    ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed, if
-    that is a symbol.
+    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, like one about a parallel axis.
+    If ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed,
+    if that is a symbol.
     """
 
     cost: float
@@ -98,12 +97,16 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     angles = {_text(atom) for atom in letters.atoms if atom in inside}
     nearest: dict[tuple[Node, str], Near] = {}
     pairs = 0
-    for known in _known_formulas():
-        is_wrong_kind = _is_column(known) != is_matrix(scale[0]) or not fits(known)
+    quantity = _text(_quantity(named))
+    for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
+        is_wrong_kind = _is_column(known) != is_matrix(scale[0])
         is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
         for renaming in renamings(_names(known), names, angles):
+            own = [(old, new) for old, new in renaming.items() if new is not None]
+            if mine and not is_consistent([*own, (mine, quantity)]):
+                continue
             pairs += 1
             if pairs > MOST_PAIRS:
                 break
@@ -112,6 +115,20 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _quantity(named: NamedFormula) -> Node:
+    """Return the name or the rate for which a claim is solved."""
+    atoms = (node for _, node in walk(named.side) if is_atom(node))
+    own = (atom for atom in atoms if named.name in (atom.value, *(str(n.value) for _, n in walk(atom))))
+    return next(own, named.side)
+
+
+def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
+    """Yield the known relations, solved for the symbols that a quantity may be, with these symbols."""
+    for name, known in solved_relations():
+        if is_fitting(name, quantity, is_angle=False):
+            yield name, known
 
 
 def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
@@ -133,7 +150,7 @@ def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
         tree = trees.pop()
         if tree.kind == "call" and tree.value in OPPOSITE:
             angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if _is_atom(tree):
+        if is_atom(tree):
             if tree.kind == "name" and tree.value in numeric.definitions:
                 trees.append(numeric.definitions[str(tree.value)])
             elif tree.value != "pi":
@@ -161,7 +178,8 @@ def _nodes(tree: Node) -> list[Node]:
     return [node for _, node in walk(tree)]
 
 
-def _is_atom(tree: Node) -> bool:
+def is_atom(tree: Node) -> bool:
+    """Return whether a part of a formula is a symbol, a function of time or a rate of one."""
     if tree.kind == "name":
         return True
     inner = tree
@@ -271,7 +289,8 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         needed = _needed(named, known, view, letters)
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
-                changes += ((part.path, change, _text(part.node) if _is_atom(part.node) else "") for change in _changes(search, part))
+                letter = _text(part.node) if is_atom(part.node) else ""
+                changes += ((part.path, change, letter) for change in _changes(search, part))
     trees = [
         (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
     ]
@@ -281,8 +300,17 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
             if is_absent(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
-                trees.append((cost, code, _renamed(_tree(known), {mine: LACKING if other is None else atoms[other]
-                                                                  for mine, other in renaming.items()}), ""))
+                trees.append(
+                    (
+                        cost,
+                        code,
+                        _renamed(
+                            _tree(known),
+                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                        ),
+                        "",
+                    )
+                )
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
@@ -294,76 +322,16 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
     is_central = "about its centre of mass" in known.name
-    is_shifted = actual is not None and is_central and _is_shifted(actual, target, letters)
+    is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
     near_ones = []
     for cost, code, tree, letter in trees:
         has_lacking = LACKING in _nodes(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        is_symmetric = absent is not None and _is_symmetric(absent, letter, renaming)
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming)
         near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted, is_symmetric, letter))
     return near_ones
-
-
-def _is_symmetric(absent: str, letter: str, renaming: dict[str, str | None]) -> bool:
-    """Return whether a claim may mean a body with two equal moments of inertia, for one of which it lacks the letter.
-
-    ``letter`` stands in the place of the absent symbol. Books give equal moments the letter of the first: I_1 for
-    I_1 = I_2, and I_2 for I_2 = I_3.
-    """
-    return any(absent == later and renaming.get(earlier) == letter for earlier, later in EQUAL_MOMENTS)
-
-
-def _is_shifted(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether values are those of a known moment of inertia plus m d^2, for a parallel axis at a distance d.
-
-    The distance is a simple fraction of one length in the claim, or has two such components. Values that are multiples
-    of the known ones are not shifted.
-    """
-    if any(map(is_matrix, (*actual, *known))) or not all(known):
-        return False
-    ratios = [value / other for value, other in zip(actual, known, strict=True)]
-    if min(ratios) <= 1 or all(near(ratio, ratios[0]) for ratio in ratios):
-        return False
-    added = [value - other for value, other in zip(actual, known, strict=True)]
-    for mass, *lengths in permutations(letters.atoms.values(), 2):
-        if _are_squares([_share(added, mass, *lengths)]):
-            return True
-    return any(
-        _are_squares(_shares(added, mass, pair))
-        for mass in letters.atoms.values()
-        for pair in combinations([length for length in letters.atoms.values() if length != mass], 2)
-    )
-
-
-def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
-    """Return the rational number k for which the added values are k m d^2; None if there is none."""
-    return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
-
-
-def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the rational numbers k and l for which the added values are m (k a^2 + l b^2), as far as there are any."""
-    (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
-        (a * a, b * b) for a, b in zip(*lengths, strict=True)
-    ]  # fmt: skip
-    (a, b), (c, d), *_ = rows
-    below = a * d - b * c
-    if not below:
-        return [None]
-    shares = ((first * d - b * second) / below, (a * second - first * c) / below)
-    fits = all(near(value / m, shares[0] * p + shares[1] * q)
-               for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
-    return [rational([share]) for share in shares] if fits else [None]
-
-
-def _are_squares(shares: Sequence[Fraction | None]) -> bool:
-    return all(share is not None and share > 0 and _is_square(share) for share in shares)
-
-
-def _is_square(share: Fraction) -> bool:
-    """Return whether a fraction is the square of a fraction."""
-    return all(math.isqrt(number) ** 2 == number for number in (share.numerator, share.denominator))
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
@@ -494,7 +462,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
             values.append(value)
             continue
         name = named.name
-        rates = {node: value for _, node in walk(named.side) if _is_atom(node) and node.kind == "call"}
+        rates = {node: value for _, node in walk(named.side) if is_atom(node) and node.kind == "call"}
         whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
         try:
             values.append(whole.value(named.side))

@@ -12,7 +12,7 @@ from itertools import islice
 from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
 from symrot.checker.recognition.renaming import axes_of, is_consistent
 
-__all__ = ["absent_name", "renamings", "strangeness"]
+__all__ = ["absent_name", "is_fitting", "renamings", "strangeness"]
 
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
@@ -50,7 +50,7 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
     """
     if abs(len(known) - len(own)) > 1:
         return []
-    fitting = {name: [other for other in own if _fits(name, other, other in angles)] for name in known}
+    fitting = {name: [other for other in own if is_fitting(name, other, other in angles)] for name in known}
     order = sorted(known, key=lambda name: (len(fitting[name]), name))
     complete = []
     for absent in (*([""] if len(known) <= len(own) else []), *order):  # the name that the claim lacks, or none
@@ -99,7 +99,7 @@ def _extended(
 
 
 @lru_cache(maxsize=20_000)
-def _fits(known: str, own: str, is_angle: bool) -> bool:
+def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     """Return whether the names of a claim's quantity and of a known formula's quantity may mean the same."""
     name = plain_name(own)
     if known == name:

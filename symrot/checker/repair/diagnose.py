@@ -27,7 +27,7 @@ from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 
-__all__ = ["diagnose"]
+__all__ = ["MOST_REPAIRS", "diagnose"]
 
 MOST_EDITS = 40_000
 """The most edits of one tree."""
@@ -143,7 +143,7 @@ class _Search:
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
 
     def equation_form(self, changes: Sequence[Change]) -> Any:
-        """Return a repaired claim with its terms collected, equal for repairs that only move terms between the sides."""
+        """Return a repaired claim with its terms collected: equal for repairs that only move terms."""
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
         sides = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))

@@ -61,7 +61,8 @@ COST = {
     "two_faults": 1.6, "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "name_transposed": 0.02,
-    "rows_as_columns": 0.01, "names_exchanged": 0.1, "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "rows_as_columns": 0.01, "names_exchanged": 0.1, "root_left_out": 0.1,
+    "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
     "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
     # one fault everywhere in a tree
     "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
@@ -288,9 +289,25 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
         yield "factor", product(rest), COST["factor_removed"]
     yield from _of_quotients(factors)
     yield from _with_exchanged_names(node, matrices)
+    yield from _with_roots(node, matrices)
     if not any(map(matrices, factors)):
         yield "factor", product([number(2), node]), COST["product_doubled_or_halved"]
         yield "factor", product([number(Fraction(1, 2)), node]), COST["product_doubled_or_halved"]
+
+
+def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
+    """Yield a product with the root of its numbers, and with the root of its other factors."""
+    if any(map(matrices, node.args)):
+        return
+    numbers = [factor for factor in node.args if not _has_names(factor)]
+    others = [factor for factor in node.args if _has_names(factor)]
+    for rooted, rest in ((numbers, others), (others, numbers)):
+        if rooted and rest:
+            yield "exponent", product([*rest, Node("call", "sqrt", (product(rooted),))]), COST["root_left_out"]
+
+
+def _has_names(node: Node) -> bool:
+    return any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(node))
 
 
 def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
@@ -345,6 +362,8 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         (argument,) = arguments
         yield "half_angle", replace(node, args=(product([argument, Node("inv", None, (number(2),))]),)), 0.0
         yield "double_half_angle", replace(node, args=(product([number(2), argument]),)), 0.0
+    elif name == "sqrt":
+        yield "exponent", arguments[0], COST["root_left_out"]
     elif name in ROTATIONS:
         yield "active_passive_transpose", replace(node, args=(negated(arguments[0]),)), 0.0
         for axis in _spelled_like(name):

@@ -159,6 +159,8 @@ def _equations(source: str) -> list[tuple[list[Expr], list[Expr]]]:
         (left, shape), (right, own_shape) = flatten(equation.left), flatten(equation.right)
         if shape == own_shape:
             forms.append(([*left, *right], [primitive(a - b) for a, b in zip(left, right, strict=True)]))
+            squares = [primitive(a**2 - b**2) for a, b in zip(left, right, strict=True)]
+            forms.append((squares, [primitive(a - b) for a, b in zip(left, right, strict=True)]))
         else:
             named = list(left if own_shape is None else right)
             forms.append((named, named))
@@ -216,7 +218,10 @@ def _print_diagnoses(entries: list[dict[str, Any]], results: list[Judgement], fa
     """Print how many diagnoses name the fault, and how many formulas have their original among their repairs."""
     called = [entry["id"] for entry, result in zip(entries, results, strict=True)
               if entry["id"] in faulty and result.verdict in BAD]  # fmt: skip
-    for words, chosen in ((f"of the faulty formulas called {' or '.join(BAD)}", called), ("of all faulty formulas", faulty)):
+    for words, chosen in (
+        (f"of the faulty formulas called {' or '.join(BAD)}", called),
+        ("of all faulty formulas", faulty),
+    ):
         print(f"{words}: diagnosis right in {_share([faulty[n].is_named for n in chosen])}, "
               f"original among the repairs in {_share([faulty[n].is_offered for n in chosen])}")  # fmt: skip
 
@@ -266,7 +271,9 @@ def main(arguments: list[str] | None = None) -> int:
             for word, is_right in zip(SHORTCOMINGS, own, strict=True):
                 if word in options.list and not is_right:
                     repairs = " | ".join(result.repairs)
-                    print(f"{word:9}{entry['fault']:17}{result.code:20}{entry['id']:38}{entry['text']!r}  ->  {repairs}")
+                    print(
+                        f"{word:9}{entry['fault']:17}{result.code:20}{entry['id']:38}{entry['text']!r}  ->  {repairs}"
+                    )
     return int(any(result.outcome in ("accused", "believed") for result in results))
 
 
