@@ -50,21 +50,22 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
-    """Yield an equation solved for each of the given letters and rates in which it is linear.
+    """Yield an equation solved for each of the given letters and rates in which it, or their square, is linear.
 
     The letter stays on a side of its own with its factor: ``I*w2 == I*w1 + M*t``.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     for atom in atoms:
         solution = _solution(terms, atom)
-        if solution is None or solution.exponent != 1:
+        if solution is None:
             continue
         coefficient, rest = solution.coefficient, solution.rest
         if coefficient.kind == "neg":
             coefficient, rest = negated(coefficient), sum_of([negated(term) for term in _terms(rest)])
         name = atom.args[0] if atom.value == "diff" else atom
-        side = product([coefficient, atom]) if coefficient != number(1) else atom
-        yield NamedFormula(str(name.value), side, rest, name is not atom, _divided_by(coefficient))
+        power = atom if solution.exponent == 1 else Node("power", None, (atom, number(2)))
+        side = product([coefficient, power]) if coefficient != number(1) else power
+        yield NamedFormula(str(name.value), side, rest, name is not atom, _solve(coefficient, solution.exponent))
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
@@ -83,8 +84,14 @@ def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[
     return sum_of(sides[0]), sum_of(sides[1])
 
 
-def _divided_by(coefficient: Node) -> Solve:
-    return lambda formula: product([formula, Node("inv", None, (coefficient,))])
+def _solve(coefficient: Node, exponent: int) -> Solve:
+    """Return the function that turns a formula for the side with a letter into a formula for the letter."""
+
+    def solved(formula: Node) -> Node:
+        quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula
+        return quotient if exponent == 1 else Node("call", "sqrt", (quotient,))
+
+    return solved
 
 
 def _terms(tree: Node) -> list[Node]:

@@ -146,8 +146,8 @@ class _Search:
         """Return a repaired claim with its terms collected: equal for repairs that only move terms."""
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
-        sides = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
-        return terms_of_equation(*sides, self.numeric.is_matrix), canonical_definitions
+        left, right = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
+        return terms_of_equation(left, right, self.numeric.is_matrix), canonical_definitions
 
     def trees(self, changes: Sequence[Change]) -> tuple[Node, ...]:
         """Return the sides and the definitions of a repaired claim."""
