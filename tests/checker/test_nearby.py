@@ -130,7 +130,7 @@ def test_a_moment_of_an_unknown_body_is_not_accused(claim):
 
 
 @pytest.mark.parametrize(("claim", "code", "repaired"), [
-    ("J w_1 - M t = J w_2", "sign_of_term", "J*w_1 + M*t = J*w_2"),
+    ("J w_1 - M Delta_t = J w_2", "sign_of_term", "J*w_1 + M*Delta_t = J*w_2"),
     ("H^2 = A^2 w_1^2 + B^2 w_2^2 + C w_3^2", "exponent", "H^2 = A^2*w_1^2 + B^2*w_2^2 + C^2*w_3^2"),
     ("dw_1/dt + (C - B) w_2 w_3/B = N_1/A", "wrong_symbol", "w_1' + (C - B)*w_2*w_3/A = N_1/A"),
 ])  # fmt: skip

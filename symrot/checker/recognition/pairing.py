@@ -26,6 +26,9 @@ INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
 ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 """Euler angle -> its index where all three have one letter, as theta_1, theta_2 and theta_3."""
 
+RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
+"""Component of an angular velocity -> the letter of an aircraft's rate."""
+
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
 
@@ -129,6 +132,8 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
             return other[:-1] + ORDER[known], True
         if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
             return known, True
+    if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
+        return RATES[known], True
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():

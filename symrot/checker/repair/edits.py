@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import isqrt
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
@@ -299,15 +300,19 @@ def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change
     """Yield a product with the root of its numbers, and with the root of its other factors."""
     if any(map(matrices, node.args)):
         return
-    numbers = [factor for factor in node.args if not _has_names(factor)]
-    others = [factor for factor in node.args if _has_names(factor)]
+    kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
+    numbers, others = (
+        [f for f, named in zip(node.args, kinds, strict=True) if named == kind] for kind in (False, True)
+    )
     for rooted, rest in ((numbers, others), (others, numbers)):
-        if rooted and rest:
+        if rooted and rest and not all(map(_is_square, rooted)):
             yield "exponent", product([*rest, Node("call", "sqrt", (product(rooted),))]), COST["root_left_out"]
 
 
-def _has_names(node: Node) -> bool:
-    return any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(node))
+def _is_square(node: Node) -> bool:
+    """Return whether a factor is the square of a rational number, or the inverse of one."""
+    value = (node.args[0] if node.kind == "inv" else node).value
+    return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
 
 
 def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
