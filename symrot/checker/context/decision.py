@@ -245,7 +245,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
         sentence = f"this is the formula {' and '.join(reasons)}: the {known.name}"
         word = "doubtful" if verdict.verdict == "definition" else verdict.verdict
         if verdict.repairs and verdict.diagnosis.code not in ("none", "derived"):
-            return replace(verdict, verdict=word, notes=(*verdict.notes, sentence), reason="")
+            whole = replace(verdict.diagnosis, text=f"{verdict.diagnosis.text}; {sentence}")
+            return replace(verdict, verdict=word, diagnosis=whole, reason="")
         return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")
     return verdict
 
