@@ -58,6 +58,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
+            if other_verdict is None and repair and is_false and claim.implied and not verdict.repairs:
+                verdict = _near_relation(claim, verdict)
     except TimeUp:
         other_verdict = None
         if verdict is None:
@@ -113,6 +115,14 @@ def _on_name(
     if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
         verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict with the diagnosis and the repairs that make a false claim a known relation."""
+    from symrot.checker.recognition.naming import verdict_near_relation
+
+    nearest = verdict_near_relation(claim)
+    return verdict if nearest is None else replace(verdict, diagnosis=nearest.diagnosis, repairs=nearest.repairs)
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:

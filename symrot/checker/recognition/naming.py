@@ -17,22 +17,24 @@ from sympy import Function, Matrix, Mul, Rational, Symbol, acos, asin, atan2
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
-from symrot.checker.recognition.identification import identified, unit_of
+from symrot.checker.recognition.identification import identified, plain_name, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
-from symrot.checker.recognition.nearby import Near, near_formulas
+from symrot.checker.recognition.nearby import Near, is_atom, near_formulas
 from symrot.checker.recognition.relations import primitive, terms_expanded
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
+from symrot.checker.recognition.solved_relations import put_back, solved_claims
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, neighbours, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact.decide import decide
 
-__all__ = ["verdict_on_name", "verdict_on_relation", "words_of"]
+__all__ = ["SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation", "words_of"]
 
 TIME = Node("name", "t")
 
@@ -59,8 +61,14 @@ MANY_ENTRIES = 4
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
 """The faults that a wrong unit proves."""
 
+MOST_SOLVED = 4
+"""The most letters for which an equation is solved, to compare it with known relations."""
+
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+AS_NEAR = 0.15
+"""The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
@@ -82,7 +90,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"(d(phi|theta|psi|alpha|gamma)|(phi|theta|psi)_?dot)(_?[1-3])?", ("angle rates", "precession", "spin")),
     (r"dbeta(_?[0-4])?", ("angle rates", "quaternion rates")),
     (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]", ("quaternion", "Rodrigues parameters of")),
-    (r"d(omega|w)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
+    (r"d(omega|w|Omega)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
     (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
     (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
@@ -122,6 +130,9 @@ OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 
 MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
+
+RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
+"""Word for the momentum of an angle -> the rate of this angle in known formulas."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
@@ -193,9 +204,35 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
-    near = _near(claim, named)
+    near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
     is_open = words_of(named) is not None or named.solve is None
     return _edited(claim, named) if near is None and is_open else near
+
+
+def verdict_near_relation(claim: Claim) -> Verdict | None:
+    """Return the verdict "doubtful" on a false equation if one change makes it a known relation; otherwise None."""
+    assert claim.relation is not None
+    return None if claim.hypotheses else _near_relation(claim, *claim.relation[1:])
+
+
+def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
+    """Return the verdict "doubtful" if one change makes an equation a known relation, solved for one of its letters."""
+    if len(_letters(left) | _letters(right)) < LEAST_SYMBOLS_RELATED:
+        return None
+    atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
+    order = sorted(atoms, key=lambda atom: atom.value != "diff")  # rates first
+    for named in islice(solved_claims(left, right, order), MOST_SOLVED):
+        verdict = _near(claim, named)
+        if verdict is not None:
+            repairs = tuple(_in_claim(repair, left, right, named) for repair in verdict.repairs)
+            return replace(verdict, repairs=repairs)
+    return None
+
+
+def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
+    """Return a repair of an equation, solved for a letter, with its terms on the sides where the claim has them."""
+    sides = put_back(left, right, named, read_relation(repair.text)[2])
+    return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
@@ -204,8 +241,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
-    of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
-    shifted = next(of_bodies, False)
+    of_bodies = [near for near in nearby if _is_of_body(near.code, near.known.name)]
+    shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
     for near in nearby:
@@ -271,31 +308,32 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
 def _is_evident(named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
+    count = len(letters | _letters(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not _letters(near.tree) <= letters
-    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree)
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or near.is_symmetric):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         return words is not None
-    if near.code == "extra_term":
-        return False  # the formula may be a more general one
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
-    if is_general and not (near.code == "wrong_symbol" and len(letters) >= MANY_LETTERS):
+    is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
+    if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
+        return False  # the formula may be a more general one
+    if is_general and not (near.code == "wrong_symbol" and count >= MANY_LETTERS):
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
     if words is None:
-        return len(letters) >= MANY_LETTERS
+        return count >= MANY_LETTERS
     is_sum = _has_terms(named.formula)
     if near.code == "sign_of_term" and not is_sum:
         return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
-    return len(letters) >= least
+    return count >= least
 
 
 def _has_terms(formula: Node) -> bool:
@@ -315,7 +353,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not _has_terms(named.formula))
-        if not readings or is_open or _is_of_body(edit.code, readings[0].name):
+        is_exchange = edit.code == "wrong_symbol" and _letters(edit.tree) == letters  # the letters mean something else
+        if not readings or is_open or is_exchange or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:
@@ -453,6 +492,12 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
         return False  # the whole spin is no rate of an angle
+    if (own_angle := re.fullmatch(r"p_?(phi|theta|psi|varphi)", named.name)) and "momentum of" in known.name:
+        rate = next((new for word, old in RATES.items() if f"momentum of {word}" in known.name
+                     for new in [known.mapping.get(old, old)]), "")  # fmt: skip
+        return plain_name(rate) == f"d{own_angle[1]}" and not (
+            "nutation" in known.name and own_angle[1] in ("phi", "psi")
+        )
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False

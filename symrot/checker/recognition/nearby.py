@@ -10,6 +10,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import chain
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
@@ -18,7 +19,8 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
-from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
+from symrot.checker.recognition.moments import is_shifted_moment, is_symmetric_body
+from symrot.checker.recognition.pairing import absent_name, is_fitting, renamings, strangeness
 from symrot.checker.recognition.parts import (
     LACKING,
     Change,
@@ -35,13 +37,15 @@ from symrot.checker.recognition.parts import (
     values_of,
     variants,
 )
+from symrot.checker.recognition.renaming import is_consistent
+from symrot.checker.recognition.solved_relations import solved_relations
 from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import UndefinedValue, points
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 from symrot.checker.units.units import read_unit
 
-__all__ = ["Near", "near_formulas"]
+__all__ = ["Near", "is_atom", "near_formulas"]
 
 MOST_DRAWS = 40
 """The most random points that are drawn to find some where a formula has a value."""
@@ -61,7 +65,9 @@ class Near(NamedTuple):
     """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
 
     ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
-    than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
+    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, like one about a parallel axis.
+    If ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed,
+    if that is a symbol.
     """
 
     cost: float
@@ -71,6 +77,8 @@ class Near(NamedTuple):
     renamed: int
     has_other_unit: bool
     is_shifted: bool
+    is_symmetric: bool
+    letter: str
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
@@ -89,12 +97,16 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     angles = {_text(atom) for atom in letters.atoms if atom in inside}
     nearest: dict[tuple[Node, str], Near] = {}
     pairs = 0
-    for known in _known_formulas():
-        is_wrong_kind = _is_column(known) != is_matrix(scale[0]) or not fits(known)
+    quantity = _text(_quantity(named))
+    for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
+        is_wrong_kind = _is_column(known) != is_matrix(scale[0])
         is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
         for renaming in renamings(_names(known), names, angles):
+            own = [(old, new) for old, new in renaming.items() if new is not None]
+            if mine and not is_consistent([*own, (mine, quantity)]):
+                continue
             pairs += 1
             if pairs > MOST_PAIRS:
                 break
@@ -103,6 +115,20 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _quantity(named: NamedFormula) -> Node:
+    """Return the name or the rate for which a claim is solved."""
+    atoms = (node for _, node in walk(named.side) if is_atom(node))
+    own = (atom for atom in atoms if named.name in (atom.value, *(str(n.value) for _, n in walk(atom))))
+    return next(own, named.side)
+
+
+def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
+    """Yield the known relations, solved for the symbols that a quantity may be, with these symbols."""
+    for name, known in solved_relations():
+        if is_fitting(name, quantity, is_angle=False):
+            yield name, known
 
 
 def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
@@ -124,7 +150,7 @@ def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
         tree = trees.pop()
         if tree.kind == "call" and tree.value in OPPOSITE:
             angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if _is_atom(tree):
+        if is_atom(tree):
             if tree.kind == "name" and tree.value in numeric.definitions:
                 trees.append(numeric.definitions[str(tree.value)])
             elif tree.value != "pi":
@@ -152,7 +178,8 @@ def _nodes(tree: Node) -> list[Node]:
     return [node for _, node in walk(tree)]
 
 
-def _is_atom(tree: Node) -> bool:
+def is_atom(tree: Node) -> bool:
+    """Return whether a part of a formula is a symbol, a function of time or a rate of one."""
     if tree.kind == "name":
         return True
     inner = tree
@@ -257,21 +284,33 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     target = values_of(_tree(known), own)
     if target is None:
         return []
-    changes: list[tuple[Path, Change]] = []
+    changes: list[tuple[Path, Change, str]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
-                changes += ((part.path, change) for change in _changes(search, part))
-    trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
+                letter = _text(part.node) if is_atom(part.node) else ""
+                changes += ((part.path, change, letter) for change in _changes(search, part))
+    trees = [
+        (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
+    ]
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
         for part in parts(_tree(known), own, actual):
             if is_absent(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
-                trees.append((cost, code, _renamed(_tree(known), {mine: LACKING if other is None else atoms[other]
-                                                                  for mine, other in renaming.items()})))  # fmt: skip
+                trees.append(
+                    (
+                        cost,
+                        code,
+                        _renamed(
+                            _tree(known),
+                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                        ),
+                        "",
+                    )
+                )
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
@@ -282,23 +321,17 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
-    is_shifted = actual is not None and _is_shifted(actual, target)
+    is_central = "about its centre of mass" in known.name
+    is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
     near_ones = []
-    for cost, code, tree in trees:
+    for cost, code, tree, letter in trees:
         has_lacking = LACKING in _nodes(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted))
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming)
+        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted, is_symmetric, letter))
     return near_ones
-
-
-def _is_shifted(actual: Values, known: Values) -> bool:
-    """Return whether values are larger than those of a known formula, and no multiple of them."""
-    if any(map(is_matrix, (*actual, *known))) or not all(known):
-        return False
-    ratios = [value / other for value, other in zip(actual, known, strict=True)]
-    return min(ratios) > 1 and not all(near(ratio, ratios[0]) for ratio in ratios)
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
@@ -429,7 +462,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
             values.append(value)
             continue
         name = named.name
-        rates = {node: value for _, node in walk(named.side) if _is_atom(node) and node.kind == "call"}
+        rates = {node: value for _, node in walk(named.side) if is_atom(node) and node.kind == "call"}
         whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
         try:
             values.append(whole.value(named.side))
