@@ -288,6 +288,8 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
+    if near.array_letters >= MANY_ENTRIES:
+        return True
     if words is None:
         return len(letters) >= MANY_LETTERS
     is_sum = _has_terms(named.formula)

@@ -16,6 +16,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
+from symrot.checker.recognition.array_faults import ArrayFault, array_faults, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
@@ -62,6 +63,7 @@ class Near(NamedTuple):
 
     ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
     than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
+    ``array_letters`` is the number of components and other letters of a formula with vectors or matrices, otherwise 0.
     """
 
     cost: float
@@ -71,6 +73,7 @@ class Near(NamedTuple):
     renamed: int
     has_other_unit: bool
     is_shifted: bool
+    array_letters: int = 0
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
@@ -83,7 +86,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     scale = values_of(named.formula, letters.points)
     if scale is None:
         return []
-    search = _search(named, letters)
+    search = _search(claim, named, letters)
     names = [_text(atom) for atom in letters.atoms]
     inside = {node for angle in letters.angles for node in _nodes(angle)}
     angles = {_text(atom) for atom in letters.atoms if atom in inside}
@@ -206,11 +209,15 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point."""
+    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
+
+    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula.
+    """
 
     named: NamedFormula
     letters: Letters
     variants: dict[Path, list[tuple[float, Variant]]]
+    arrays: list[ArrayFault]
 
     def matching(self, part: Part) -> Iterator[Variant]:
         """Yield the variants of a part that have the values that the part should have."""
@@ -231,7 +238,7 @@ CLOSE = 1e-8
 """The largest relative difference between values that are compared further."""
 
 
-def _search(named: NamedFormula, letters: Letters) -> Search:
+def _search(claim: Claim, named: NamedFormula, letters: Letters) -> Search:
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})
         for point, value in zip(letters.points, RANDOM, strict=True)
@@ -242,7 +249,7 @@ def _search(named: NamedFormula, letters: Letters) -> Search:
         parent = kinds[path[:-1]] if path else ""
         made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
         by_path[path] = sorted(made, key=lambda pair: pair[0])
-    return Search(named, letters, by_path)
+    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters))
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near]:
@@ -258,12 +265,16 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     if target is None:
         return []
     changes: list[tuple[Path, Change]] = []
+    by_edit: list[tuple[float, str, Node]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
                 changes += ((part.path, change) for change in _changes(search, part))
+        if needed is not None:
+            by_edit += ((edit.cost, edit.code, edit.tree) for edit in matching(search.arrays, needed))
     trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
+    trees += by_edit
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
         for part in parts(_tree(known), own, actual):
@@ -283,13 +294,14 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
     is_shifted = actual is not None and _is_shifted(actual, target)
+    array_letters = len(letters.atoms) if search.arrays else 0
     near_ones = []
     for cost, code, tree in trees:
         has_lacking = LACKING in _nodes(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted))
+        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted, array_letters))
     return near_ones
 
 
