@@ -317,7 +317,9 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not _has_terms(named.formula))
-        if not readings or is_open or _is_of_body(edit.code, readings[0].name):
+        is_exchange = edit.code == "wrong_symbol" and _letters(edit.tree) == letters  # of two lengths of a body
+        code = "factor" if is_exchange else edit.code
+        if not readings or is_open or _is_of_body(code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:

@@ -208,12 +208,20 @@ def _index(point: Point, node: Node) -> Any:
 def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
+        if any(is_matrix(entry) for row in rows for entry in row):
+            return _stacked([entry for (entry,) in rows])
         if len({len(row) for row in rows}) > 1:
             raise UndefinedValue("expected rows of equal length in a matrix, got unequal ones")
         return tuple(map(tuple, rows))
-    if node.value == ("(", ")"):
-        return column(rows)
-    return rows
+    return _stacked(rows) if node.value == ("(", ")") else rows
+
+
+def _stacked(parts: Sequence[Any]) -> Rows:
+    """Return a column of numbers and of the entries of columns: (scalar, vector) is a quaternion."""
+    entries: list[Any] = []
+    for part in parts:
+        entries += [entry for (entry,) in needed(part, (None, 1))] if is_matrix(part) else [part]
+    return column(entries)
 
 
 def _call(point: Point, node: Node) -> Any:
@@ -264,7 +272,7 @@ def _summed(values: Any) -> Any:
 
 
 def _matrix(rows: Any) -> Rows:
-    return column(rows) if isinstance(rows, list) else needed(rows)
+    return _stacked(rows) if isinstance(rows, list) else needed(rows)
 
 
 def _cross(left: Any, right: Any) -> Rows:
