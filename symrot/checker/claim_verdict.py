@@ -105,13 +105,14 @@ def _on_name(
 
     start = perf_counter()
     with _place_of(claim):
-        verdict = verdict_on_name(claim, named, repair)
+        verdict = by_name = verdict_on_name(claim, named, repair)
         if claim.context:
             from symrot.checker.context.decision import in_context
 
             verdict = in_context(claim, named, verdict)
-    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
-        verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
+        by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+        verdict = by_name if by_name.verdict == "doubtful" else by_hypotheses
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 

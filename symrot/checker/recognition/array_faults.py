@@ -7,7 +7,7 @@ wrong part of a formula does not see such faults; so whole formulas are compared
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
 from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
@@ -15,12 +15,14 @@ from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 
-__all__ = ["ArrayFault", "array_faults", "has_arrays", "matching"]
+__all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
 
 MOST_EDITS = 700
 """The most edits of one formula that are evaluated."""
 CLOSE = 1e-8
 """The largest relative difference between sums of entries that are compared further."""
+OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
+"""Functions of vectors, matrices and quaternions."""
 LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
 """Edits that make another formula likelier than a fault: with a term less, or a vector in the other direction."""
 
@@ -34,8 +36,11 @@ class ArrayFault(NamedTuple):
 
 
 def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
-    """Return whether a formula contains the name of a vector, matrix or quaternion."""
-    return any(node.kind == "name" and numeric.is_matrix(node) for _, node in walk(formula))
+    """Return whether a formula contains the name of a vector, matrix or quaternion, or a product of vectors."""
+    return any(
+        (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
+        for _, node in walk(formula)
+    )
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
@@ -57,9 +62,7 @@ def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
     for fault in islice(faults, bisect_left(faults, total - slack, key=lambda fault: fault.total), None):
         if fault.total > total + slack:
             return
-        if [*map(shape_of, fault.values)] == [*map(shape_of, needed)] and all(
-            _agree(own, other) for own, other in zip(fault.values, needed, strict=True)
-        ):
+        if all(map(agree, fault.values, needed)):
             yield fault.edit
 
 
@@ -67,7 +70,10 @@ def _total(values: Values) -> float:
     return float(sum(entries_of(values[0])))
 
 
-def _agree(left: object, right: object) -> bool:
+def agree(left: Any, right: Any) -> bool:
+    """Return whether two scalars or matrices are equal to nearly double precision."""
+    if shape_of(left) != shape_of(right):
+        return False
     size = max(map(abs, entries_of(right)))
     pairs = zip(entries_of(left), entries_of(right), strict=True)
     return all(near(a, b) or abs(a - b) <= CLOSE * size for a, b in pairs)

@@ -18,7 +18,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, unit_of
@@ -193,9 +193,32 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
+    if claim.hypotheses:
+        return _near(claim, named) if _are_usable(claim) else None
     near = _near(claim, named)
     is_open = words_of(named) is not None or named.solve is None
     return _edited(claim, named) if near is None and is_open else near
+
+
+def _are_usable(claim: Claim) -> bool:
+    """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
+
+    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known formulas.
+    """
+    short = claim.defining
+    return all(
+        sign == "==" and (short.get(str(left.value)) == right or _is_norm(left, right) or _is_norm(right, left))
+        for sign, left, right in claim.hypotheses
+    )
+
+
+def _is_norm(side: Node, other: Node) -> bool:
+    """Return whether an equation says that a sum of squares, or a length, is one."""
+    squares = side.args if side.kind == "sum" else (side,)
+    return other == number(1) and all(
+        (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
+        for term in squares
+    )
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
@@ -288,7 +311,7 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
-    if near.array_letters >= MANY_ENTRIES:
+    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
         return True
     if words is None:
         return len(letters) >= MANY_LETTERS
@@ -297,7 +320,7 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
         return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
-    return len(letters) >= least
+    return max(len(letters), near.array_letters) >= least
 
 
 def _has_terms(formula: Node) -> bool:

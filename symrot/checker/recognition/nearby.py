@@ -16,9 +16,10 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
-from symrot.checker.recognition.array_faults import ArrayFault, array_faults, matching
+from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
+from symrot.checker.recognition.letters import POINTS, is_atom, letters_of_formula, nodes_of, pieces_of, text_of
 from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
 from symrot.checker.recognition.parts import (
     LACKING,
@@ -36,18 +37,14 @@ from symrot.checker.recognition.parts import (
     values_of,
     variants,
 )
-from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
+from symrot.checker.repair.edits import COST, PRODUCT_OF_INERTIA, flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
-from symrot.checker.repair.points import UndefinedValue, points
+from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 from symrot.checker.units.units import read_unit
 
 __all__ = ["Near", "near_formulas"]
 
-MOST_DRAWS = 40
-"""The most random points that are drawn to find some where a formula has a value."""
-POINTS = 3
-"""The number of points at which formulas are compared."""
 MOST_PAIRS = 1500
 """The most pairs of a known formula and a renaming that are compared."""
 MOST_NODES = 500
@@ -77,19 +74,22 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first."""
+    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
+
+    There is none if the formula has the values of a known one at the points, as it may by the hypotheses of the claim.
+    """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
-    letters = _letters(claim, named)
+    letters = letters_of_formula(claim, named)
     if letters is None:
         return []
     scale = values_of(named.formula, letters.points)
     if scale is None:
         return []
-    search = _search(claim, named, letters)
-    names = [_text(atom) for atom in letters.atoms]
-    inside = {node for angle in letters.angles for node in _nodes(angle)}
-    angles = {_text(atom) for atom in letters.atoms if atom in inside}
+    search = _search(claim, named, letters, scale)
+    names = [text_of(atom) for atom in letters.atoms]
+    inside = {node for angle in letters.angles for node in nodes_of(angle)}
+    angles = {text_of(atom) for atom in letters.atoms if atom in inside}
     nearest: dict[tuple[Node, str], Near] = {}
     pairs = 0
     for known in _known_formulas():
@@ -101,76 +101,14 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
             pairs += 1
             if pairs > MOST_PAIRS:
                 break
-            for candidate in _compared(search, known, renaming):
+            compared = _compared(search, known, renaming)
+            if compared is None and claim.hypotheses:
+                return []
+            for candidate in compared or ():
                 key = (candidate.tree, known.name)
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
-
-
-def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses."""
-    numeric = NumericFilter(claim)
-    hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
-    narrow = any(node.value in ("asin", "acos", "cos") for node in (named.side, *_nodes(named.formula)))
-    drawn = points(
-        numeric.symbols, numeric.functions, numeric.definitions, hypotheses, frozenset(),
-        count=POINTS if hypotheses else MOST_DRAWS, most=0.9 if narrow else 1.7,
-    )  # fmt: skip
-    roots = [node.args[0] for node in _nodes(named.formula) if node.kind == "call" and node.value == "sqrt"]
-    defined = [point for point in drawn if values_of(named.formula, [point]) is not None]
-    at = sorted(defined, key=lambda point: -min((point.value(root) for root in roots), default=0.0))[:POINTS]
-    if len(at) < POINTS:
-        return None
-    trees, atoms, angles = [named.formula], dict[Node, Values](), dict[Node, Values]()
-    while trees:
-        tree = trees.pop()
-        if tree.kind == "call" and tree.value in OPPOSITE:
-            angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if _is_atom(tree):
-            if tree.kind == "name" and tree.value in numeric.definitions:
-                trees.append(numeric.definitions[str(tree.value)])
-            elif tree.value != "pi":
-                atoms[tree] = values_of(tree, at) or ()
-        else:
-            trees.extend(tree.args)
-    if not all(map(len, (*atoms.values(), *angles.values()))) or any(is_matrix(v[0]) for v in atoms.values()):
-        return None
-    places = [
-        PointOfLetters(
-            dict(point.symbols), {}, numeric.definitions, _pieces(named.formula),
-            rates={atom: values[place] for atom, values in atoms.items() if atom.kind == "call"},
-        )
-        for place, point in enumerate(at)
-    ]  # fmt: skip
-    return Letters(atoms, angles, places)
-
-
-def _pieces(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of the parts of a tree."""
-    return frozenset(id(node) for _, node in walk(tree))
-
-
-def _nodes(tree: Node) -> list[Node]:
-    return [node for _, node in walk(tree)]
-
-
-def _is_atom(tree: Node) -> bool:
-    if tree.kind == "name":
-        return True
-    inner = tree
-    while inner.kind == "call" and inner.value == "diff" and set(inner.args[1:]) == {TIME}:
-        inner = inner.args[0]
-    return inner.kind == "call" and inner.args == (TIME,) and tree.kind == "call"
-
-
-def _text(atom: Node) -> str:
-    """Return the text of a symbol or rate, as SymPy's printer writes it."""
-    if atom.kind == "name":
-        return str(atom.value)
-    return f"diff({_text(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (
-        f"{atom.value}(t)"
-    )  # fmt: skip
 
 
 @cache
@@ -190,7 +128,7 @@ _BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "
 
 @cache
 def _known_pieces(known: Known) -> frozenset[int]:
-    return _pieces(_tree(known))
+    return pieces_of(_tree(known))
 
 
 def _is_column(known: Known) -> bool:
@@ -211,13 +149,15 @@ def _tree(known: Known) -> Node:
 class Search(NamedTuple):
     """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
 
-    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula.
+    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula; ``values`` are the
+    values of the formula itself.
     """
 
     named: NamedFormula
     letters: Letters
     variants: dict[Path, list[tuple[float, Variant]]]
     arrays: list[ArrayFault]
+    values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
         """Yield the variants of a part that have the values that the part should have."""
@@ -238,24 +178,27 @@ CLOSE = 1e-8
 """The largest relative difference between values that are compared further."""
 
 
-def _search(claim: Claim, named: NamedFormula, letters: Letters) -> Search:
+def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})
         for point, value in zip(letters.points, RANDOM, strict=True)
-    ])  # fmt: skip
+    ], letters.aliases)  # fmt: skip
     kinds = {path: node.kind for path, node in walk(named.formula)}
     by_path = {}
     for path, node in walk(named.formula):
         parent = kinds[path[:-1]] if path else ""
         made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
         by_path[path] = sorted(made, key=lambda pair: pair[0])
-    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters))
+    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters), values)
 
 
-def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near]:
-    """Return the formulas that result from one change, if a claim means a known formula under a renaming."""
+def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
+    """Return the formulas that result from one change, if a claim means a known formula under a renaming.
+
+    Return None if the claim has the values of that formula already.
+    """
     named, letters = search.named, search.letters
-    atoms = {_text(atom): atom for atom in letters.atoms}
+    atoms = {text_of(atom): atom for atom in letters.atoms}
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
     own = [
         PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, _known_pieces(known))
@@ -268,6 +211,8 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     by_edit: list[tuple[float, str, Node]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
+        if needed is not None and all(map(agree, search.values, needed)):
+            return None
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
                 changes += ((part.path, change) for change in _changes(search, part))
@@ -297,7 +242,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     array_letters = len(letters.atoms) if search.arrays else 0
     near_ones = []
     for cost, code, tree in trees:
-        has_lacking = LACKING in _nodes(tree)
+        has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
@@ -441,7 +386,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
             values.append(value)
             continue
         name = named.name
-        rates = {node: value for _, node in walk(named.side) if _is_atom(node) and node.kind == "call"}
+        rates = {node: value for _, node in walk(named.side) if is_atom(node) and node.kind == "call"}
         whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
         try:
             values.append(whole.value(named.side))

@@ -74,11 +74,15 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Letters:
-    """The symbols and rates of a formula, and the arguments of its angular functions, with their values."""
+    """The symbols and rates of a formula, and the arguments of its angular functions, with their values.
+
+    ``aliases`` are names that stand for a formula of the letters, such as c1 for cos(alpha).
+    """
 
     atoms: Mapping[Node, Values]
     angles: Mapping[Node, Values]
     points: Sequence[Point]
+    aliases: Mapping[Node, Values] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -284,10 +288,11 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
     """Yield every other symbol in place of a symbol."""
-    if node not in letters.atoms:
+    written = {**letters.atoms, **letters.aliases}
+    if node not in written:
         return
-    alike = neighbours(node.value, letters.names) if node.kind == "name" else ()
-    for other, others in letters.atoms.items():
+    alike = neighbours(node.value, [str(n.value) for n in written if n.kind == "name"]) if node.kind == "name" else ()
+    for other, others in written.items():
         if other != node:
             cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
             yield Variant(Change(other, "wrong_symbol", cost), others)
@@ -356,6 +361,7 @@ def _inverted(node: Node) -> Node:
 
 def _factors(letters: Letters) -> Iterator[tuple[Node, Values]]:
     yield from letters.atoms.items()
+    yield from letters.aliases.items()
     for angle, values in letters.angles.items():
         for name in ("sin", "cos", "tan"):
             yield Node("call", name, (angle,)), tuple(map(FUNCTIONS[name], values))

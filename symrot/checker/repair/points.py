@@ -304,7 +304,7 @@ def _hyperbolic(x: Any) -> tuple[Any, Any]:
 
 _SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": rotation_of_quaternion}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sin": sine, "cos": cosine, "sqrt": square_root, "abs": absolute, "atan2": arctangent, "Matrix": _matrix,
+    "sin": sine, "cos": cosine, "sqrt": square_root, "abs": lambda x: square_root(dot(*[[row[0] for row in needed(x, (None, 1))]] * 2)) if is_matrix(x) else absolute(x), "atan2": arctangent, "Matrix": _matrix,
     "cross": _cross,
     "exp": exponential, "log": logarithm, "atan": lambda x: arctangent(x, 1.0),
     "asin": lambda x: arctangent(x, _other_leg(x)), "acos": lambda x: arctangent(_other_leg(x), x),
