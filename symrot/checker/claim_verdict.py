@@ -143,6 +143,9 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
             decision = decide_value(claim)
         else:
             decision = for_positive_bases(decide_equation(claim.equation), claim.equation)
+            if decision.verdict == "undecided" and (expanded := claim.expanded) is not claim:
+                equation = expanded.equation  # the abbreviations, such as c1 = cos(alpha), are replaced by formulas
+                decision = for_positive_bases(decide_equation(equation), equation)
     return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
 
 

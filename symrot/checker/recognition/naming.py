@@ -126,6 +126,9 @@ MOST_COMPONENTS = 4
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
 
+OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
+"""Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
+
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments a faulty formula is unlikely to mean."""
 
@@ -235,7 +238,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
         tried.add(near.tree)
-        if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
+        if not _is_evident(claim, named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
         if _says_too_little(claim, named, near):
             continue
@@ -291,11 +294,11 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
 
 
-def _is_evident(named: NamedFormula, near: Near) -> bool:
+def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
-    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree)
+    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree) and not OF_ANGLES.search(near.known.name)
     if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
@@ -313,14 +316,34 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
         return True
     if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
         return True
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
+        return True
     if words is None:
-        return len(letters) >= MANY_LETTERS
+        return max(len(letters), near.array_letters) >= MANY_LETTERS
     is_sum = _has_terms(named.formula)
     if near.code == "sign_of_term" and not is_sum:
         return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
     return max(len(letters), near.array_letters) >= least
+
+
+def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether the context of a claim says that its quantity is the one of a known formula."""
+    meaning = claim.context.meaning_of(_plain(named))
+    return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
+    """Return whether the angle or function of a component of a quaternion is wrong: beta_1 = e_1 sin(phi)."""
+    place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
+    word, _, rest = near.known.name.partition(" component of the quaternion of axis")
+    return (
+        place is not None
+        and near.code in ("half_angle", "double_half_angle", "sin_cos_swap")
+        and bool(rest)
+        and place[2] in COMPONENTS.get(word, "")
+    )
 
 
 def _has_terms(formula: Node) -> bool:

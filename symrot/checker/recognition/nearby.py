@@ -232,7 +232,9 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
     name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
-    lacking = Node("name", name) if absent is not None else None
+    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
+    timed = Node("call", name, (TIME,))
+    lacking = (timed if timed in moving else Node("name", name)) if absent is not None else None
     if lacking in letters.atoms:
         return []
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
