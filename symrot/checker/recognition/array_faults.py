@@ -84,6 +84,7 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
         if edit.code not in LEFT_OUT and edit.tree != formula:
             yield edit
     yield from _powers(formula, numeric)
+    yield from _conjugates(formula)
     yield from _factors(formula, numeric, letters)
 
 
@@ -97,6 +98,17 @@ def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
         elif node.kind == "power" and numeric.is_matrix(node.args[0]):
             base = node.args[0]
             yield Edit("exponent", COST["exponent"], path, replaced(formula, path, lambda _, new=base: new))
+
+
+def _conjugates(formula: Node) -> Iterator[Edit]:
+    """Yield the formula with one more conjugate, or one less, among the factors of its quaternion products."""
+    for path, node in walk(formula):
+        for place, factor in enumerate(node.args if node.kind == "call" and node.value == "qmul" else ()):
+            is_conjugate = factor.kind == "call" and factor.value == "conjugate"
+            made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
+            cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
+            tree = replaced(formula, (*path, place), lambda _, new=made: new)
+            yield Edit("active_passive_transpose", cost, (*path, place), tree)
 
 
 def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.recognition.parts import Letters, PointOfLetters, Values, values_of
+from symrot.checker.recognition.parts import Letters, PointOfLetters, Values, rates_of_entries, values_of
 from symrot.checker.repair.edits import OPPOSITE
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import points
@@ -53,7 +53,9 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
         tree = trees.pop()
         if tree.kind == "call" and tree.value in OPPOSITE:
             angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if is_atom(tree):
+        if tree.kind == "call" and tree.value == "diff" and str(tree.args[0].value) in defined_names:
+            trees.append(rates_of_entries(defined_names[str(tree.args[0].value)], tree.args[1:]))
+        elif is_atom(tree):
             if tree.kind == "name" and tree.value in defined_names:
                 trees.append(defined_names[str(tree.value)])
             elif tree.value != "pi":

@@ -149,8 +149,8 @@ def _tree(known: Known) -> Node:
 class Search(NamedTuple):
     """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
 
-    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula; ``values`` are the
-    values of the formula itself.
+    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula; ``values`` are
+    the values of the formula itself.
     """
 
     named: NamedFormula
@@ -211,7 +211,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     by_edit: list[tuple[float, str, Node]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
-        if needed is not None and all(map(agree, search.values, needed)):
+        if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
             return None
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):

@@ -98,6 +98,8 @@ def _fits(known: str, own: str, is_angle: bool) -> bool:
     is_rate = own.startswith("diff(") or own.endswith("dot")
     if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
+    if known in ("x", "y", "z") and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
+        return True  # a component of any vector, such as a rotated velocity
     if is_angle:
         return unit in ("rad", None)
     pattern = MORE_LETTERS.get(unit or "", LETTERS.get(unit or ""))

@@ -31,6 +31,7 @@ __all__ = [
     "multiples",
     "near",
     "parts",
+    "rates_of_entries",
     "values_of",
     "variants",
 ]  # fmt: skip
@@ -45,6 +46,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "cot": lambda x: 1 / math.tan(x),
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
 }  # fmt: skip
+TIME = Node("name", "t")
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
@@ -98,7 +100,16 @@ class PointOfLetters(Point):
     def _value(self, node: Node) -> Any:
         if node.kind == "call" and node in self.rates:
             return self.rates[node]
+        if node.kind == "call" and node.value == "diff" and str(node.args[0].value) in self.definitions:
+            return super()._value(rates_of_entries(self.definitions[str(node.args[0].value)], node.args[1:]))
         return super()._value(node)
+
+
+def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
+    """Return a matrix of functions of time in which the derivative of each function replaces it."""
+    if tree.kind == "call" and tree.args == (TIME,):
+        return Node("call", "diff", (tree, *variables))
+    return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
 
 
 def values_of(node: Node, points: Sequence[Point]) -> Values | None:
