@@ -34,7 +34,14 @@ from symrot.checker.claim.quantities import (
 )
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
-from symrot.checker.claim.shapes import Shape, added_names, multiplied_names, shape_of, with_unit_matrices
+from symrot.checker.claim.shapes import (
+    Shape,
+    added_names,
+    multiplied_names,
+    operand_names,
+    shape_of,
+    with_unit_matrices,
+)
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
@@ -453,6 +460,9 @@ def _with_vectors(
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
     shapes = _shapes(vectors, define)
+    operands = {name: shape for name, shape in operand_names(relation, shapes).items() if name not in named}
+    vectors = [*vectors, *map(Vector, operands)]
+    shapes |= operands
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape

@@ -11,7 +11,7 @@ from itertools import pairwise
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, number, walk
 
-__all__ = ["Shape", "added_names", "multiplied_names", "shape_of", "with_unit_matrices"]
+__all__ = ["Shape", "added_names", "multiplied_names", "operand_names", "shape_of", "with_unit_matrices"]
 
 Shape = tuple[int, int] | None
 """Rows and columns of a matrix; None for a scalar."""
@@ -103,6 +103,14 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
                 if len(factors) == 1 and factors[0].kind == "name" and shape_of(factors[0], shapes) is None:
                     added[str(factors[0].value)] = own
     return added
+
+
+def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
+    """Return the names of unknown shape in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)``: they are vectors."""
+    calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
+    names = [argument for call in calls if call.kind == "call" for argument in call.args
+             if argument.kind == "name" and len(call.args) < 3]  # fmt: skip
+    return {str(name.value): (3, 1) for name in names if shapes.get(str(name.value)) is None}
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:

@@ -21,11 +21,11 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
-from symrot.checker.recognition.identification import identified, unit_of
+from symrot.checker.recognition.identification import identified, plain_name, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive, terms_expanded
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, neighbours, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
@@ -61,6 +61,9 @@ SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_ter
 
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+AS_NEAR = 0.15
+"""The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
@@ -122,6 +125,9 @@ OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 
 MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
+
+RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
+"""Word for the momentum of an angle -> the rate of this angle in known formulas."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
@@ -230,8 +236,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
-    of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
-    shifted = next(of_bodies, False)
+    of_bodies = [near for near in nearby if _is_of_body(near.code, near.known.name)]
+    shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
     for near in nearby:
@@ -298,16 +304,17 @@ def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     is_new = not _letters(near.tree) <= letters
-    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree) and not OF_ANGLES.search(near.known.name)
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
+    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         return words is not None
-    if near.code == "extra_term":
-        return False  # the formula may be a more general one
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
+    is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
+    if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
+        return False  # the formula may be a more general one
     if is_general and not (near.code == "wrong_symbol" and len(letters) >= MANY_LETTERS):
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
@@ -363,9 +370,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not _has_terms(named.formula))
-        is_exchange = edit.code == "wrong_symbol" and _letters(edit.tree) == letters  # of two lengths of a body
-        code = "factor" if is_exchange else edit.code
-        if not readings or is_open or _is_of_body(code, readings[0].name):
+        is_exchange = edit.code == "wrong_symbol" and _letters(edit.tree) == letters  # the letters mean something else
+        if not readings or is_open or is_exchange or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:
@@ -503,6 +509,12 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
         return False  # the whole spin is no rate of an angle
+    if (own_angle := re.fullmatch(r"p_?(phi|theta|psi|varphi)", named.name)) and "momentum of" in known.name:
+        rate = next((new for word, old in RATES.items() if f"momentum of {word}" in known.name
+                     for new in [known.mapping.get(old, old)]), "")  # fmt: skip
+        return plain_name(rate) == f"d{own_angle[1]}" and not (
+            "nutation" in known.name and own_angle[1] in ("phi", "psi")
+        )
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False

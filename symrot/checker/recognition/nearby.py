@@ -9,7 +9,9 @@ import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
+from itertools import combinations, permutations
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
@@ -34,6 +36,7 @@ from symrot.checker.recognition.parts import (
     multiples,
     near,
     parts,
+    rational,
     values_of,
     variants,
 )
@@ -51,6 +54,8 @@ MOST_NODES = 500
 """The most symbols and operations of a formula that is searched."""
 FEW = 3
 """The most symbols of a known formula with an angle that a claim without angles may mean."""
+EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
+"""Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
 SQUARED = ", squared"
 TIME = Node("name", "t")
 
@@ -59,8 +64,10 @@ class Near(NamedTuple):
     """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
 
     ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
-    than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
-    ``array_letters`` is the number of components and other letters of a formula with vectors or matrices, otherwise 0.
+    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, as about a parallel axis. If
+    ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed, if
+    that is a symbol. ``array_letters`` is the number of components and other letters of a formula with vectors or
+    matrices, otherwise 0.
     """
 
     cost: float
@@ -70,6 +77,8 @@ class Near(NamedTuple):
     renamed: int
     has_other_unit: bool
     is_shifted: bool
+    is_symmetric: bool
+    letter: str
     array_letters: int = 0
 
 
@@ -207,18 +216,21 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     target = values_of(_tree(known), own)
     if target is None:
         return []
-    changes: list[tuple[Path, Change]] = []
-    by_edit: list[tuple[float, str, Node]] = []
+    changes: list[tuple[Path, Change, str]] = []
+    by_edit: list[tuple[float, str, Node, str]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
         if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
             return None
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
-                changes += ((part.path, change) for change in _changes(search, part))
+                letter = text_of(part.node) if is_atom(part.node) else ""
+                changes += ((part.path, change, letter) for change in _changes(search, part))
         if needed is not None:
-            by_edit += ((edit.cost, edit.code, edit.tree) for edit in matching(search.arrays, needed))
-    trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
+            by_edit += ((edit.cost, edit.code, edit.tree, "") for edit in matching(search.arrays, needed))
+    trees = [
+        (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
+    ]
     trees += by_edit
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
@@ -226,8 +238,17 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
             if is_absent(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
-                trees.append((cost, code, _renamed(_tree(known), {mine: LACKING if other is None else atoms[other]
-                                                                  for mine, other in renaming.items()})))  # fmt: skip
+                trees.append(
+                    (
+                        cost,
+                        code,
+                        _renamed(
+                            _tree(known),
+                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                        ),
+                        "",
+                    )
+                )
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
@@ -240,24 +261,79 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
-    is_shifted = actual is not None and _is_shifted(actual, target)
+    is_central = "about its centre of mass" in known.name
+    is_shifted = actual is not None and is_central and _is_shifted(actual, target, letters)
     array_letters = len(letters.atoms) if search.arrays else 0
     near_ones = []
-    for cost, code, tree in trees:
+    for cost, code, tree, letter in trees:
         has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted, array_letters))
+        is_symmetric = absent is not None and _is_symmetric(absent, letter, renaming)
+        flags = other_unit, is_shifted, is_symmetric
+        near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters))
     return near_ones
 
 
-def _is_shifted(actual: Values, known: Values) -> bool:
-    """Return whether values are larger than those of a known formula, and no multiple of them."""
+def _is_symmetric(absent: str, letter: str, renaming: dict[str, str | None]) -> bool:
+    """Return whether a claim may mean a body with two equal moments of inertia, for one of which it lacks the letter.
+
+    ``letter`` stands in the place of the absent symbol. Books give equal moments the letter of the first: I_1 for
+    I_1 = I_2, and I_2 for I_2 = I_3.
+    """
+    return any(absent == later and renaming.get(earlier) == letter for earlier, later in EQUAL_MOMENTS)
+
+
+def _is_shifted(actual: Values, known: Values, letters: Letters) -> bool:
+    """Return whether values are those of a known moment of inertia plus m d^2, for a parallel axis at a distance d.
+
+    The distance is a simple fraction of one length in the claim, or has two such components. Values that are multiples
+    of the known ones are not shifted.
+    """
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
-    return min(ratios) > 1 and not all(near(ratio, ratios[0]) for ratio in ratios)
+    if min(ratios) <= 1 or all(near(ratio, ratios[0]) for ratio in ratios):
+        return False
+    added = [value - other for value, other in zip(actual, known, strict=True)]
+    for mass, *lengths in permutations(letters.atoms.values(), 2):
+        if _are_squares([_share(added, mass, *lengths)]):
+            return True
+    return any(
+        _are_squares(_shares(added, mass, pair))
+        for mass in letters.atoms.values()
+        for pair in combinations([length for length in letters.atoms.values() if length != mass], 2)
+    )
+
+
+def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
+    """Return the rational number k for which the added values are k m d^2; None if there is none."""
+    return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
+
+
+def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
+    """Return the rational numbers k and l for which the added values are m (k a^2 + l b^2), as far as there are any."""
+    (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
+        (a * a, b * b) for a, b in zip(*lengths, strict=True)
+    ]  # fmt: skip
+    (a, b), (c, d), *_ = rows
+    below = a * d - b * c
+    if not below:
+        return [None]
+    shares = ((first * d - b * second) / below, (a * second - first * c) / below)
+    fits = all(near(value / m, shares[0] * p + shares[1] * q)
+               for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
+    return [rational([share]) for share in shares] if fits else [None]
+
+
+def _are_squares(shares: Sequence[Fraction | None]) -> bool:
+    return all(share is not None and share > 0 and _is_square(share) for share in shares)
+
+
+def _is_square(share: Fraction) -> bool:
+    """Return whether a fraction is the square of a fraction."""
+    return all(math.isqrt(number) ** 2 == number for number in (share.numerator, share.denominator))
 
 
 def _is_promising(search: Search, needed: Values) -> bool:

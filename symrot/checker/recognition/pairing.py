@@ -29,6 +29,12 @@ ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
 
+RADIUS = re.compile(r"[rR](_?\w+)?|a")
+"""The letters of radii; a is also the side of a box."""
+
+UNUSUAL = 2
+"""The number of changed names as which a letter counts that is unusual for a length of its kind."""
+
 MOST_STEPS = 400
 """The most partial renamings of one known formula that are tried."""
 MOST = 6
@@ -62,8 +68,14 @@ def _moved(renaming: dict[str, str | None]) -> int:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a name that the claim lacks counts too."""
-    return sum(other is None or plain_name(other) != name for name, other in renaming.items())
+    """Return how many names a renaming changes; a name that the claim lacks counts too.
+
+    A letter for radii in place of another length, or the other way round, counts more.
+    """
+    changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
+    unusual = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and (other := renaming[name]) is not None
+               and bool(RADIUS.fullmatch(name)) != bool(RADIUS.fullmatch(other))]  # fmt: skip
+    return len(changed) + UNUSUAL * len(unusual)
 
 
 def _extended(

@@ -32,6 +32,7 @@ __all__ = [
     "near",
     "parts",
     "rates_of_entries",
+    "rational",
     "values_of",
     "variants",
 ]  # fmt: skip
@@ -269,7 +270,8 @@ def multiples(part: Part) -> Iterator[Change]:
     if part.node.kind == "number":
         value = ratio * part.node.value
         if value > 0:
-            cost = COST["factor"] + COST["per_factor_e"] * abs(math.log(ratio))
+            size = 0.0 if ratio in (2, Fraction(1, 2)) else COST["per_factor_e"] * abs(math.log(ratio))
+            cost = COST["factor"] + size
             yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
     elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
         if ratio == -1:
