@@ -493,7 +493,7 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
     return replace(
         arrays,
         definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
-        relation=_with_scalar_products(arrays.relation, columns),
+        relation=_with_scalar_products(arrays.relation, [*columns, *names]),
         vectors=(*arrays.vectors, *columns),
         notes=(
             *arrays.notes,

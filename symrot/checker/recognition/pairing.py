@@ -17,7 +17,7 @@ __all__ = ["absent_name", "renamings", "strangeness"]
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
 
-MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmn]"}
+MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmnvf](_[xyz1-3])?"}
 """Unit -> letters that books use for it in long formulas, where other letters say what is meant."""
 
 INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
