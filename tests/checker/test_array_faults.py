@@ -20,13 +20,12 @@ def test_correct_formulas_of_arrays_are_recognised(text):
 
 
 FAULTY = (
-    # a factor 1 - cos beta, a square, a sign, a half, a power and a conjugate are missing
+    # a factor 1 - cos beta, a square, a sign and a half are missing, and s is written for c
     ("B = cos(beta) I + m m^T + sin(beta) [m x]", [], "factor", "B = cos(beta)*eye(3) + (1 - cos(beta))*m*m.T + sin(beta)*skew(m)"),
     ("R = I + sin(x) W + (1 - cos(x)) W", ["W = [[0, -c, b], [c, 0, -a], [-b, a, 0]]", "a^2 + b^2 + c^2 = 1"], "exponent",
      "R = eye(3) + sin(x)*W + (1 - cos(x))*W^2"),
     ("g_dot = 1/2 (I + [g x] - g g^T) w", [], "sign_of_term", "g_dot = 1/2*(eye(3) + skew(g) + g*g.T)*w"),
     ("g_dot = (I + [g x] + g g^T) w", [], "factor", "g_dot = 1/2*(eye(3) + skew(g) + g*g.T)*w"),
-    ("u' = q u q", [], "active_passive_transpose", "diff(u, t) = vector_part(qmul(qmul(q, u), conjugate(q)))"),
     ("R = [[c, -s, 0], [s, s, 0], [0, 0, 1]]", ["c = cos(psi)", "s = sin(psi)"], "wrong_symbol",
      "R = [[c, -s, 0], [s, c, 0], [0, 0, 1]]"),
 )  # fmt: skip
