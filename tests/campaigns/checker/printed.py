@@ -229,7 +229,10 @@ def _print_diagnoses(entries: list[dict[str, Any]], results: list[Judgement], fa
     """Print how many diagnoses name the fault, and how many formulas have their original among their repairs."""
     called = [entry["id"] for entry, result in zip(entries, results, strict=True)
               if entry["id"] in faulty and result.verdict in BAD]  # fmt: skip
-    for words, chosen in ((f"of the faulty formulas called {' or '.join(BAD)}", called), ("of all faulty formulas", faulty)):
+    for words, chosen in (
+        (f"of the faulty formulas called {' or '.join(BAD)}", called),
+        ("of all faulty formulas", faulty),
+    ):
         print(f"{words}: diagnosis right in {_share([faulty[n].is_named for n in chosen])}, "
               f"original among the repairs in {_share([faulty[n].is_offered for n in chosen])}")  # fmt: skip
 
@@ -279,7 +282,9 @@ def main(arguments: list[str] | None = None) -> int:
             for word, is_right in zip(SHORTCOMINGS, own, strict=True):
                 if word in options.list and not is_right:
                     repairs = " | ".join(result.repairs)
-                    print(f"{word:9}{entry['fault']:17}{result.code:20}{entry['id']:38}{entry['text']!r}  ->  {repairs}")
+                    print(
+                        f"{word:9}{entry['fault']:17}{result.code:20}{entry['id']:38}{entry['text']!r}  ->  {repairs}"
+                    )
     return int(any(result.outcome in ("accused", "believed") for result in results))
 
 
