@@ -107,13 +107,14 @@ def _on_name(
 
     start = perf_counter()
     with _place_of(claim):
-        verdict = verdict_on_name(claim, named, repair)
+        verdict = by_name = verdict_on_name(claim, named, repair)
         if claim.context:
             from symrot.checker.context.decision import in_context
 
             verdict = in_context(claim, named, verdict)
-    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
-        verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
+        by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+        verdict = by_name if by_name.verdict == "doubtful" else by_hypotheses
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 
@@ -152,6 +153,9 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
             decision = decide_value(claim)
         else:
             decision = for_positive_bases(decide_equation(claim.equation), claim.equation)
+            if decision.verdict == "undecided" and (expanded := claim.expanded) is not claim:
+                equation = expanded.equation  # the abbreviations, such as c1 = cos(alpha), are replaced by formulas
+                decision = for_positive_bases(decide_equation(equation), equation)
     return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
 
 

@@ -105,7 +105,7 @@ def verdict_on_readings(
             break
         try:
             verdict = verdict_on_reading(
-                reading, notation(reading), source, assume, units, repair and not verdicts, stated
+                reading, notation(reading), source, assume, units, repair and all(map(_is_unknown, verdicts)), stated
             )
         except InputError as reason:
             refusal = refusal or reason
@@ -118,8 +118,10 @@ def verdict_on_readings(
         raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
-    if verdicts[0][1].verdict == "definition":
-        verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
+    if _is_unknown(verdicts[0]) and not first:
+        first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "doubtful"), 0)
+    if _is_unknown(verdicts[0]):
+        verdicts.insert(0, verdicts.pop(first))  # a known formula, or one near it, is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
     if refusal is not None and not of_usual:
@@ -131,6 +133,11 @@ def verdict_on_readings(
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
+
+
+def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
+    """Return whether the verdict on a reading is that it may be a definition."""
+    return reading[1].verdict == "definition"
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:

@@ -4,6 +4,7 @@ A quaternion q has the scalar part q_0 and the vector part q_1, q_2, q_3, or a v
 are Hamilton's. A vector in a product is the quaternion with the scalar part zero.
 """
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,12 @@ TIME = Node("name", "t")
 CONJUGATE, PRODUCT = "conjugate", "qmul"
 UNITS = {"i": 1, "j": 2, "k": 3}
 """Name of a unit -> its place among the components."""
+
+ANGULAR = re.compile(r"(omega|Omega|w)(_[A-Za-z]+)?")
+"""Names of angular velocities."""
+
+RATES = ("q", "Q", "beta", "epsilon")
+"""Names of quaternions in a product with an angular velocity alone, which has no mark."""
 
 ENDINGS = ("_vec", "_v", "v")
 """Endings of a name for the vector part of a quaternion."""
@@ -137,6 +144,8 @@ def _quaternion_names(
                 add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
+    for factor in _turned(sides):
+        add(factor)
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
         if node.kind == "call" and node.value == "sqrt" and node.args[0].kind == "call" and node.args[0].value == "dot":
@@ -150,6 +159,25 @@ def _quaternion_names(
             for factor in side.args:
                 add(factor)
     return tuple(names)
+
+
+def _turned(sides: Sequence[Node]) -> Sequence[Node]:
+    """Return the quaternions that only their places show: q in ``v' = q v q`` and in ``q' = 1/2 omega q``."""
+    for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
+        factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
+        if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
+            continue
+        names = [str(factor.value) for factor in factors]
+        rate = _bare(side.args[0]) if side.kind == "call" and side.value == "diff" else side
+        moved = {str(rate.value), str(rate.value).removesuffix("_prime")} if rate.kind == "name" else set()
+        is_sandwich = len(names) == 3 and names[0] == names[2] != names[1] and names[1] in moved
+        if is_sandwich and names[0].islower():
+            return factors[:1]
+        own = [factor for factor in factors if not ANGULAR.fullmatch(str(factor.value))]
+        is_rate = side.kind == "call" and len(factors) == 2 and len(own) == 1 and own[0] == rate
+        if is_rate and str(own[0].value) in RATES:
+            return own
+    return ()
 
 
 def _vector_of_pair(node: Node) -> Sequence[Node]:
@@ -204,8 +232,8 @@ class _Products:
 
     def multiplied(self, node: Node) -> Node:
         """Return a product in which quaternions and the vectors between them are multiplied by Hamilton's rule."""
-        places = [n for n, factor in enumerate(node.args) if self.is_quaternion(factor)]
-        if len(places) < 2:
+        places = [n for n, factor in enumerate(node.args) if self.is_quaternion(factor) or _is_angular(factor)]
+        if len(places) < 2 or not any(map(self.is_quaternion, node.args)):
             return node
         between = node.args[places[0] : places[-1] + 1]
         for factor in between:
@@ -216,6 +244,10 @@ class _Products:
             value = Node("call", PRODUCT, (value, factor), node.span)
         rest = [*node.args[: places[0]], *node.args[places[-1] + 1 :]]
         return product([*rest, value], node.span) if rest else value
+
+
+def _is_angular(node: Node) -> bool:
+    return node.kind == "name" and ANGULAR.fullmatch(str(node.value)) is not None
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:

@@ -14,7 +14,15 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with_parts
-from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.matrices import (
+    bold_matrices,
+    matrix_of_entries,
+    rate_matrices,
+    used_columns,
+    used_matrices,
+    with_lengths,
+    without_time,
+)
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
@@ -26,7 +34,14 @@ from symrot.checker.claim.quantities import (
 )
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
-from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
+from symrot.checker.claim.shapes import (
+    Shape,
+    added_names,
+    multiplied_names,
+    operand_names,
+    shape_of,
+    with_unit_matrices,
+)
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
@@ -360,7 +375,9 @@ def claim_of_relation(
     if unit is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
-    bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
+    rates = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
+    relation = relation[0], without_time(relation[1], rates), without_time(relation[2], rates)
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors}) | rates
     vectors = [vector for vector in vectors if vector.name not in bold]
     define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
     notes = [*notes, *map(_on_matrix, bold)]
@@ -446,10 +463,13 @@ def _with_vectors(
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
     shapes = _shapes(vectors, define)
+    operands = {name: shape for name, shape in operand_names(relation, shapes).items() if name not in named}
+    vectors = [*vectors, *map(Vector, operands)]
+    shapes |= operands
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape
-        for name, shape in added_names(with_units, shapes).items()
+        for name, shape in (*added_names(with_units, shapes).items(), *multiplied_names(with_units, shapes).items())
         if shape == (3, 1) or (shape == (3, 3) and is_tensor(name))
     }:
         vectors = [*vectors, *map(Vector, new)]
@@ -476,7 +496,7 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
     return replace(
         arrays,
         definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
-        relation=_with_scalar_products(arrays.relation, columns),
+        relation=_with_scalar_products(arrays.relation, [*columns, *names]),
         vectors=(*arrays.vectors, *columns),
         notes=(
             *arrays.notes,

@@ -19,12 +19,13 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, plain_name, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
-from symrot.checker.recognition.nearby import Near, is_atom, near_formulas
+from symrot.checker.recognition.letters import is_atom
+from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive, terms_expanded
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, neighbours, single_edits
@@ -137,6 +138,9 @@ RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
 
+OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
+"""Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
+
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments a faulty formula is unlikely to mean."""
 
@@ -204,6 +208,8 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
+    if claim.hypotheses:
+        return _near(claim, named) if _are_usable(claim) else None
     near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
     is_open = words_of(named) is not None or named.solve is None
     return _edited(claim, named) if near is None and is_open else near
@@ -235,6 +241,27 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
 
+def _are_usable(claim: Claim) -> bool:
+    """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
+
+    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known formulas.
+    """
+    short = claim.defining
+    return all(
+        sign == "==" and (short.get(str(left.value)) == right or _is_norm(left, right) or _is_norm(right, left))
+        for sign, left, right in claim.hypotheses
+    )
+
+
+def _is_norm(side: Node, other: Node) -> bool:
+    """Return whether an equation says that a sum of squares, or a length, is one."""
+    squares = side.args if side.kind == "sum" else (side,)
+    return other == number(1) and all(
+        (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
+        for term in squares
+    )
+
+
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None."""
     words = words_of(named)
@@ -249,7 +276,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
         tried.add(near.tree)
-        if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
+        if not _is_evident(claim, named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
         if _says_too_little(claim, named, near):
             continue
@@ -305,12 +332,13 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
 
 
-def _is_evident(named: NamedFormula, near: Near) -> bool:
+def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
     count = len(letters | _letters(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not _letters(near.tree) <= letters
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or near.is_symmetric):
+    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
@@ -326,14 +354,36 @@ def _is_evident(named: NamedFormula, near: Near) -> bool:
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
+    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+        return True
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
+        return True
     if words is None:
-        return count >= MANY_LETTERS
+        return max(count, near.array_letters) >= MANY_LETTERS
     is_sum = _has_terms(named.formula)
     if near.code == "sign_of_term" and not is_sum:
         return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
-    return count >= least
+    return max(count, near.array_letters) >= least
+
+
+def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether the context of a claim says that its quantity is the one of a known formula."""
+    meaning = claim.context.meaning_of(_plain(named))
+    return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
+    """Return whether the angle or function of a component of a quaternion is wrong: beta_1 = e_1 sin(phi)."""
+    place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
+    word, _, rest = near.known.name.partition(" component of the quaternion of axis")
+    return (
+        place is not None
+        and near.code in ("half_angle", "double_half_angle", "sin_cos_swap")
+        and bool(rest)
+        and place[2] in COMPONENTS.get(word, "")
+    )
 
 
 def _has_terms(formula: Node) -> bool:

@@ -17,7 +17,7 @@ __all__ = ["absent_name", "is_fitting", "renamings", "strangeness"]
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
 
-MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmn]"}
+MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmnvf](_[xyz1-3])?"}
 """Unit -> letters that books use for it in long formulas, where other letters say what is meant."""
 
 INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
@@ -113,6 +113,8 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     is_rate = own.startswith("diff(") or own.endswith("dot")
     if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
+    if known in ("x", "y", "z") and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
+        return True  # a component of any vector, such as a rotated velocity
     if is_angle:
         return unit in ("rad", None)
     pattern = MORE_LETTERS.get(unit or "", LETTERS.get(unit or ""))

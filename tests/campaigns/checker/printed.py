@@ -22,6 +22,7 @@ import argparse
 import sys
 import tomllib
 from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import islice, product
 from pathlib import Path
@@ -115,13 +116,19 @@ def names_fault(fault: str, code: str) -> bool:
     return code != "none" and (fault not in AGREEING or code in AGREEING[fault])
 
 
-def offers(repairs: tuple[str, ...], original: str) -> bool:
-    """Return whether one of the repairs is proven equal to an equation of the original, under a renaming."""
+def offers(
+    repairs: tuple[str, ...], original: str, given: Sequence[str] = (), given_with_original: Sequence[str] = ()
+) -> bool:
+    """Return whether one of the repairs is proven equal to an equation of the original, under a renaming.
+
+    The names that the hypotheses ``given`` define, such as c1 = cos(alpha), are replaced by their formulas, and in the
+    original those of ``given_with_original``.
+    """
     return any(
         _same_terms(repair, original)
         or any(
             _equal_renamed(mine, other)
-            for mines, others in product(_equations(repair), _equations(original))
+            for mines, others in product(_equations(repair, given), _equations(original, given_with_original))
             for mine, other in zip(mines, others, strict=True)
         )
         for repair in repairs
@@ -145,13 +152,15 @@ def _reading(source: str) -> Any:
     return latex_readings(source)[0] if is_latex(source) else readings_of(source)[0]
 
 
-def _equations(source: str) -> list[tuple[list[Expr], list[Expr]]]:
+def _equations(source: str, given: Sequence[str] = ()) -> list[tuple[list[Expr], list[Expr]]]:
     """Return the equations of a text, each as the entries of both sides, and as the primitive difference of the sides.
 
     Only the other side is taken of an equation that gives a matrix a name.
     """
     try:
-        equations = [claim.equation for line in claims_of_reading(_reading(source), source) for claim in line]
+        equations = [
+            claim.expanded.equation for line in claims_of_reading(_reading(source), source, given) for claim in line
+        ]
     except SymrotError:
         return []
     forms = []
@@ -203,15 +212,19 @@ class Diagnosed(NamedTuple):
 
 def diagnosed(entries: list[dict[str, Any]], results: list[Judgement]) -> dict[str, Diagnosed]:
     """Return, for the id of each faulty formula, what its diagnosis and its repairs are worth."""
-    originals = {entry["id"]: entry["text"] for entry in formulas("")}
+    originals = {entry["id"]: entry for entry in formulas("")}
     return {
         entry["id"]: Diagnosed(
             result.verdict in BAD and names_fault(entry["fault"], result.code),
-            result.verdict in BAD and offers(result.repairs, originals[entry["original"]]),
+            result.verdict in BAD and _offers_original(result.repairs, entry, originals[entry["original"]]),
         )
         for entry, result in zip(entries, results, strict=True)
         if entry.get("fault")
     }
+
+
+def _offers_original(repairs: tuple[str, ...], faulty: dict[str, Any], original: dict[str, Any]) -> bool:
+    return offers(repairs, original["text"], faulty.get("given", ()), original.get("given", ()))
 
 
 def _print_diagnoses(entries: list[dict[str, Any]], results: list[Judgement], faulty: dict[str, Diagnosed]) -> None:
