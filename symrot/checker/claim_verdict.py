@@ -110,9 +110,19 @@ def _on_name(
             from symrot.checker.context.decision import in_context
 
             verdict = in_context(claim, named, verdict)
+        verdict = _on_motion(claim, verdict)
     if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
         verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim by the relations between rates, momenta and energies, if these decide it."""
+    if claim.hypotheses or claim.define or claim.context.obscure:
+        return verdict
+    from symrot.checker.context.motion import by_motion
+
+    return by_motion(claim, verdict)
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:

@@ -114,6 +114,9 @@ SQUARED = ", squared"
 CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
 """Names of moments and radii of gyration about the centre of mass, and about another point."""
 
+MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
+"""Angle of ZXZ -> the word for its momentum in the names of known formulas."""
+
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
 """Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
 
@@ -444,6 +447,10 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
     centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
+    momentum = re.match(r"momentum of (\w+)", known.name)
+    if momentum and (angle := re.fullmatch(r"[pP]_?(phi|varphi|theta|vartheta|psi)", named.name)):
+        if MOMENTA.get(angle[1].removeprefix("var")) != momentum[1]:
+            return False
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -471,7 +478,7 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
     """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
     if not context:
         return True
-    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.mapping, letters)
+    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.name, known.mapping, letters)
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
