@@ -98,18 +98,29 @@ def _on_name(
 
     The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
     """
+    if claim.context.sign_of_products == "plus":
+        from symrot.checker.context.product_signs import in_claim, with_minus_sign
+
+        result = _on_name(with_minus_sign(claim), repair, formula_of)
+        return result and (None, replace(in_claim(result[1]), text=claim.text))
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
     from symrot.checker.recognition.naming import verdict_on_name
 
     start = perf_counter()
-    with _place_of(claim):
-        verdict = verdict_on_name(claim, named, repair)
-        if claim.context:
+    from symrot.checker.context.sizes import by_other_sizes
+
+    def judge(one: Claim, own: NamedFormula, with_repair: bool = False) -> Verdict:
+        verdict = verdict_on_name(one, own, with_repair)
+        if one.context:
             from symrot.checker.context.decision import in_context
 
-            verdict = in_context(claim, named, verdict)
+            verdict = in_context(one, own, verdict)
+        return verdict
+
+    with _place_of(claim):
+        verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
         verdict = _on_motion(claim, verdict)
     if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
         verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)

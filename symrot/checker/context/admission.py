@@ -76,6 +76,8 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     frame, sequence, place = frame_of(name), sequence_of(name), place_of(name)
     if meaning is None and "component of the angle rates" in name and has_order(sequence):
         yield from () if name.startswith(PLACE_OF_RATE.get(quantity, "")) else ("for another angle",)
+    if context.sign_of_products == "minus" and name.endswith("without the minus sign"):
+        yield "without the minus sign of products of inertia"
     expected = context.frame or (meaning.frame if meaning else "")
     if expected and frame and frame != expected:
         yield f"for the {frame} frame"

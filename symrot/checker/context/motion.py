@@ -1,8 +1,9 @@
-"""Verdicts on claims about the rates of Euler angles, and about tops, by the relations that each motion obeys."""
+"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations of each subject."""
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.angle_rates import substitutions_of_rates
+from symrot.checker.context.body_integrals import substitutions_of_integrals
 from symrot.checker.context.substitution import by_substitution
 from symrot.checker.context.tops import substitutions_of_tops
 from symrot.checker.verdict import Verdict
@@ -19,6 +20,9 @@ def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
     sides = equation.left, equation.right
     if any(map(is_matrix, sides)):
         return verdict
+    by_integrals = by_substitution(claim, verdict, substitutions_of_integrals(context, sides), bool(context.meanings))
+    if by_integrals is not verdict:
+        return by_integrals
     is_stated = bool(context.sequence and (context.frame or any(meaning.frame for meaning in context.meanings)))
     verdict = by_substitution(claim, verdict, substitutions_of_rates(context, sides), is_stated)
     if context.sequence not in ("", "ZXZ") or verdict.verdict in ("true", "recognised"):

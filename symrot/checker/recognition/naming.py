@@ -185,6 +185,8 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
     Some authors define products of inertia as integrals without the minus sign.
     """
+    if claim.context.sign_of_products == "minus":
+        return ()
     if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in _letters(formula)):
         return ()
     for edit in _edits(claim, formula):
