@@ -1,4 +1,4 @@
-"""Claims that mix the rates of Euler angles with components of the angular velocity: ``psi' = omega_3 - phi' cos theta``.
+"""Claims that mix rates of Euler angles with components of the angular velocity: ``psi' = omega_3 - phi' cos theta``.
 
 Each follows from ``omega = B(q) dq/dt`` or contradicts it, whatever it is solved for: the components are replaced by
 their formulas in the angles and rates, which are independent, and the rest must be an identity.

@@ -276,7 +276,8 @@ def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[st
         nouns = [(f"(?:half|semi)[- ]?{noun}", 2 * unit) for noun, unit in nouns] + nouns
         for noun, unit in nouns:
             pattern = (
-                rf"(?<!half[- ])(?<!semi[- ])(?<!base )(?<!inner )(?<!outer )(?<!tube )\b(?:of |with |and )?(?:a )?{noun} ({_TERM})(?![\w'/])"
+                r"(?<!half[- ])(?<!semi[- ])(?<!base )(?<!inner )(?<!outer )(?<!tube )"
+                rf"\b(?:of |with |and )?(?:a )?{noun} ({_TERM})(?![\w'/])"
             )
             if (match := re.search(pattern, words)) and dimension.symbol not in letters:
                 letter, factor = _scaled(match[1])
@@ -284,8 +285,8 @@ def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[st
                     continue
                 letters[dimension.symbol], factors[dimension.symbol] = letter, factor * unit
                 rest = re.sub(pattern, " ", rest, count=1, flags=re.IGNORECASE)
-    for nouns, unit in _SIDES["ellipsoid" if kind.shape == "ellipsoid" else "other"]:
-        sides = rf"\b(?:of |with )?(?<!half[- ])(?:{nouns})(?: lengths?)? ((?:{_TERM}(?![\w'/])(?:,? and |, ?)?)+)"
+    for side, unit in _SIDES["ellipsoid" if kind.shape == "ellipsoid" else "other"]:
+        sides = rf"\b(?:of |with )?(?<!half[- ])(?:{side})(?: lengths?)? ((?:{_TERM}(?![\w'/])(?:,? and |, ?)?)+)"
         if not (match := re.search(sides, words)):
             continue
         terms = [_scaled(term) for term in re.findall(_TERM, re.sub(r",? and |, ?", ";", match[1]))]

@@ -7,7 +7,7 @@ of inertia is defined with or without the minus sign, and words may say which.
 import re
 from collections.abc import Iterator, Sequence
 
-from sympy import Expr, Poly, Symbol
+from sympy import Add, Expr, Poly, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
@@ -17,7 +17,7 @@ from symrot.exact.printing import as_text
 from symrot.inertia.tensor import inertia_of_point
 from symrot.symbols import position
 
-__all__ = ["substitutions_of_integrals"]
+__all__ = ["substitutions_of_gyration", "substitutions_of_integrals"]
 
 INTEGRAL = re.compile(r"integral_[xyz]{2}")
 ENTRY = re.compile(r"[IJP]_?([xyz1-3])([xyz1-3])?")
@@ -52,8 +52,33 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
 def _entry(row: int, column: int) -> Expr:
     """Return an entry of the inertia tensor with a symbol for the integral of each product of two coordinates."""
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
-    return sum(
-        (factor * Symbol("integral_" + "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True)),
-                         real=True) for powers, factor in terms),
-        start=Poly(0, *position).as_expr(),
-    )  # fmt: skip
+    return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
+
+
+def _product(powers: Sequence[int]) -> str:
+    """Return the coordinates of a product, each as often as its power: "xx" for x^2."""
+    return "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True))
+
+
+MOMENT_OF_AXIS, MASS, GYRATION = (
+    re.compile(pattern) for pattern in (r"[IJ](_?\w+)?", "m|M", r"k(_?\w)?|r_?g|i|kappa|R_?g|rho")
+)
+
+
+def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the reading of a claim as the definition of the radius of gyration; none if it has another letter."""
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
+    patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
+    if len(names) != len(patterns):
+        return
+    atoms_by_kind = [[atom for atom, name in names.items() if pattern.fullmatch(name)] for pattern in patterns]
+    meanings = {atom: context.meaning_of(name) for atom, name in names.items()}
+    radius_by_words = [
+        atom for atom, meaning in meanings.items() if meaning and meaning.quantity.title == "radius of gyration"
+    ]
+    atoms_by_kind[2] = radius_by_words or atoms_by_kind[2]
+    if [len(atoms) for atoms in atoms_by_kind] != [1, 1, 1]:
+        return
+    ((moment,), (mass,), (radius,)) = atoms_by_kind
+    value = inertia_of_point(mass, (radius, 0, 0))[2][2]
+    yield Substitution("moment of inertia from the radius of gyration", "derivations/parallel_axis.md", {moment: value})

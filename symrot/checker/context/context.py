@@ -128,7 +128,7 @@ class Context:
 
     @property
     def sign_of_products(self) -> str:
-        """"minus" or "plus" if the words say whether products of inertia have the minus sign, otherwise empty."""
+        """ "minus" or "plus" if the words say whether products of inertia have the minus sign, otherwise empty."""
         return next((meaning.quantity.sign for meaning in self.meanings if meaning.quantity.sign), "")
 
     @property

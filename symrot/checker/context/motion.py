@@ -3,7 +3,8 @@
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.angle_rates import substitutions_of_rates
-from symrot.checker.context.body_integrals import substitutions_of_integrals
+from symrot.checker.context.axis_angles import is_stated, substitutions_of_axis_angles
+from symrot.checker.context.body_integrals import substitutions_of_gyration, substitutions_of_integrals
 from symrot.checker.context.substitution import by_substitution
 from symrot.checker.context.tops import substitutions_of_tops
 from symrot.checker.verdict import Verdict
@@ -20,11 +21,20 @@ def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
     sides = equation.left, equation.right
     if any(map(is_matrix, sides)):
         return verdict
-    by_integrals = by_substitution(claim, verdict, substitutions_of_integrals(context, sides), bool(context.meanings))
-    if by_integrals is not verdict:
-        return by_integrals
-    is_stated = bool(context.sequence and (context.frame or any(meaning.frame for meaning in context.meanings)))
-    verdict = by_substitution(claim, verdict, substitutions_of_rates(context, sides), is_stated)
+    of_gyration = any(meaning.quantity.title == "radius of gyration" for meaning in context.meanings)
+    of_momentum = is_stated(context) and context.body is not None
+    for ways, is_complete in (
+        (substitutions_of_integrals(context, sides), bool(context.meanings)),
+        (substitutions_of_gyration(context, sides), of_gyration and context.body is None),
+        (substitutions_of_axis_angles(context, sides), of_momentum),
+    ):
+        decided = by_substitution(claim, verdict, ways, is_complete)
+        if decided is not verdict:
+            return decided
+    has_frame = bool(context.frame or any(meaning.frame for meaning in context.meanings))
+    verdict = by_substitution(
+        claim, verdict, substitutions_of_rates(context, sides), bool(context.sequence) and has_frame
+    )
     if context.sequence not in ("", "ZXZ") or verdict.verdict in ("true", "recognised"):
         return verdict
     return by_substitution(claim, verdict, substitutions_of_tops(context, sides), is_complete=False)

@@ -55,10 +55,16 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
     own: set[Any] = {node.value for _, node in walk(named.formula) if node.kind == "name"}
     for size in SIZES:
         clash = ({*size.letters.values()} - {*size.letters}) & own
-        if clash or not own & {*size.letters} or (body is not None and f" {body.kind.shape.replace('_', ' ')} " not in size.bodies):
+        if (
+            clash
+            or not own & {*size.letters}
+            or (body is not None and f" {body.kind.shape.replace('_', ' ')} " not in size.bodies)
+        ):
             continue
         formula = _in_dimensions(named.formula, size)
-        other = judge(claim.with_relation(("==", named.side, formula), alternatives=()), named._replace(formula=formula))
+        other = judge(
+            claim.with_relation(("==", named.side, formula), alternatives=()), named._replace(formula=formula)
+        )
         known = [k for k in other.recognised_as if any(title in k.name for title in size.bodies) and not k.how]
         if other.verdict in ("true", "recognised") and known:
             note = f"guessed, not stated: {size.note}"

@@ -73,7 +73,9 @@ def decided(equation: Equation, substitution: Substitution) -> Decision | None:
         return None
 
 
-def by_substitution(claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool) -> Verdict:
+def by_substitution(
+    claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
+) -> Verdict:
     """Return the verdict on a claim by the ways of reading it, or ``verdict`` if these say nothing new.
 
     The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that it leaves no

@@ -1,4 +1,4 @@
-"""Claims about a symmetric top that mix spin, momenta, energies and rates: ``p_phi = I_1 phi' sin^2 theta + S cos theta``.
+"""Claims about a symmetric top that mix spin, momenta and rates: ``p_phi = I_1 phi' sin^2 theta + S cos theta``.
 
 The angle of the axis, the rates of the angles, the moments and the weight are independent; momenta, spin and energies
 are formulas in them, derived from the angular velocity in the angles of ZXZ. A letter such as n or s, which books use
@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import islice, product
 
-from sympy import Expr, Matrix, Symbol, cos, diag, expand, sin
+from sympy import Expr, Matrix, S, Symbol, cos, diag, expand, sin
 
 from symrot import symbols
 from symrot.checker.claim.atoms import atoms_of
@@ -21,7 +21,7 @@ from symrot.checker.context.substitution import Substitution
 from symrot.exact.printing import as_text
 from symrot.kinematics.euler import rate_jacobian
 
-__all__ = ["substitutions_of_tops"]
+__all__ = ["MOMENT_LETTERS", "substitutions_of_tops"]
 
 THETA, (DPHI, DTHETA, DPSI) = symbols.theta, symbols.angle_rates
 A, C, ARM, MASS, GRAVITY, WEIGHT = symbols.A, symbols.C, symbols.c_3, symbols.m, symbols.g, symbols.W
@@ -35,12 +35,14 @@ COORDINATES: tuple[tuple[str, Expr], ...] = (
     ("m|M", MASS), ("g", GRAVITY), (r"l|ell|h|a|R|d|r|[lrh]_?(G|cm|C)|z_?(G|C|cm)", ARM), ("W|mg", WEIGHT),
 )  # fmt: skip
 """Pattern of a letter -> the independent quantity that it can be."""
+MOMENT_LETTERS = {symbol: letters for letters, symbol in COORDINATES if symbol in (A, C)}
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"(omega|w|Omega)_?[3z]|omega_?s|[sSn]|nu|omega|Omega|r", ("spin along the axis",)),
     ("p_?(phi|varphi)|[LMHJ]_?z|[LMHJ]_?Z", ("momentum of precession",)), ("p_?psi|[LMHJ]_?3", ("momentum of spin",)),
     ("p_?(theta|vartheta)", ("momentum of nutation",)),
-    ("T|T_?rot|K|K_?E|E_?(k|kin|rot)|KE", ("kinetic energy",)), ("V|U|E_?p|PE", ("potential energy",)), ("E", ("energy",)),
+    ("T|T_?rot|K|K_?E|E_?(k|kin|rot)|KE", ("kinetic energy",)), ("V|U|E_?p|PE", ("potential energy",)),
+    ("E", ("energy",)),
     ("dE|E_prime|E_?1", ("energy without the energy of the spin",)), ("L", ("Lagrangian",)),
     ("[VU]_?eff", ("effective potential", "effective potential without the energy of the spin")),
 )  # fmt: skip
@@ -83,8 +85,8 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
     """Return whether two letters do not mean the same, and the claim is certainly one about a top."""
-    taken: dict[Expr, str] = {}
-    same = all(taken.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
+    letters: dict[Expr, str] = {}
+    same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
     moments = {A, C} & {*values.values()}
     is_evident = has_body or (any(title in EVIDENT for title in own) and THETA in values.values())
     is_evident = is_evident or any(map(CONJUGATE.fullmatch, names.values()))
@@ -92,17 +94,14 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
     return same and bool(own) and bool(moments) and is_evident
 
 
-def _choices(
-    context: Context, name: str, formulas: Mapping[str, Expr], load: Expr
-) -> Iterator[tuple[str, Expr]]:
+def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
     """Yield (title, formula) for each quantity of a top that a letter can be; the title of a coordinate is empty."""
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
     for letters, symbol in COORDINATES:
-        is_weight = symbol in (MASS, GRAVITY, WEIGHT)
-        if re.fullmatch(letters, name) and not (is_weight and symbol not in load.free_symbols):
-            if not pattern or re.fullmatch(pattern, symbol.name):
-                yield "", symbol
+        is_used = symbol not in (MASS, GRAVITY, WEIGHT) or symbol in load.free_symbols
+        if is_used and re.fullmatch(letters, name) and (not pattern or re.fullmatch(pattern, symbol.name)):
+            yield "", symbol
     for letters, titles in QUANTITIES:
         if re.fullmatch(letters, name):
             for title in titles:
@@ -161,5 +160,5 @@ def _of_steady_precession(
         condition = condition.subs(DPHI, own)
         mapping = {str(value): names[atom] for atom, value in mine.items()
                    if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
-        yield Substitution("rate of steady precession of a heavy top", HEAVY, {}, sides=(condition, Symbol("t") * 0),
+        yield Substitution("rate of steady precession of a heavy top", HEAVY, {}, sides=(condition, S.Zero),
                            mapping=mapping)  # fmt: skip

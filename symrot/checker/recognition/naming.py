@@ -450,9 +450,9 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
     momentum = re.match(r"momentum of (\w+)", known.name)
-    if momentum and (angle := re.fullmatch(r"[pP]_?(phi|varphi|theta|vartheta|psi)", named.name)):
-        if MOMENTA.get(angle[1].removeprefix("var")) != momentum[1]:
-            return False
+    angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
+    if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
+        return False
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -480,7 +480,9 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
     """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
     if not context:
         return True
-    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.name, known.mapping, letters)
+    return admits_name(context, known.name, _plain(named)) and admits_letters(
+        context, known.name, known.mapping, letters
+    )
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
