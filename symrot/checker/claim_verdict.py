@@ -106,10 +106,10 @@ def _on_name(
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
+    from symrot.checker.context.sizes import by_other_sizes
     from symrot.checker.recognition.naming import verdict_on_name
 
     start = perf_counter()
-    from symrot.checker.context.sizes import by_other_sizes
 
     def judge(one: Claim, own: NamedFormula, with_repair: bool = False) -> Verdict:
         verdict = verdict_on_name(one, own, with_repair)

@@ -21,17 +21,18 @@ def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
     sides = equation.left, equation.right
     if any(map(is_matrix, sides)):
         return verdict
-    of_gyration = any(meaning.quantity.title == "radius of gyration" for meaning in context.meanings)
-    of_momentum = is_stated(context) and context.body is not None
+    is_used = not context.rest  # with words that nothing uses, a claim is called neither true nor false
+    of_gyration = is_used and any(meaning.quantity.title == "radius of gyration" for meaning in context.meanings)
+    of_momentum = is_used and is_stated(context) and context.body is not None
     for ways, is_complete in (
-        (substitutions_of_integrals(context, sides), bool(context.meanings)),
+        (substitutions_of_integrals(context, sides), is_used and bool(context.meanings)),
         (substitutions_of_gyration(context, sides), of_gyration and context.body is None),
         (substitutions_of_axis_angles(context, sides), of_momentum),
     ):
         decided = by_substitution(claim, verdict, ways, is_complete)
         if decided is not verdict:
             return decided
-    has_frame = bool(context.frame or any(meaning.frame for meaning in context.meanings))
+    has_frame = is_used and bool(context.frame or any(meaning.frame for meaning in context.meanings))
     verdict = by_substitution(
         claim, verdict, substitutions_of_rates(context, sides), bool(context.sequence) and has_frame
     )
