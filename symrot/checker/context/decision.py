@@ -28,7 +28,6 @@ from symrot.checker.context.admission import (
     admits_letters,
     admits_name,
     guesses,
-    has_order,
     is_at_open_place,
     is_component,
     is_place,
@@ -36,6 +35,7 @@ from symrot.checker.context.admission import (
     plain,
     same_rotation,
 )
+from symrot.checker.context.angle_orders import has_order
 from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.context.quantities import plain_words
@@ -532,7 +532,7 @@ def _assignments(
             continue
         letters = [as_text(atom) for atom in atoms]
         unpinned = {old: new for old, new in free if old != new}
-        if admits_letters(replace(context, body=None), unpinned, letters):
+        if admits_letters(replace(context, body=None), known.name, unpinned, letters):
             yield dict(zip(chosen, atoms, strict=True))
 
 

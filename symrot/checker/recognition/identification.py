@@ -118,7 +118,7 @@ def identify(
     fitting = (
         known
         for known in identified(_value(formula))
-        if admits_name(stated, known.name, "") and admits_letters(stated, known.mapping, ())
+        if admits_name(stated, known.name, "") and admits_letters(stated, known.name, known.mapping, ())
     )
     return list(islice(fitting, most))
 

@@ -123,6 +123,9 @@ SQUARED = ", squared"
 CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
 """Names of moments and radii of gyration about the centre of mass, and about another point."""
 
+MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
+"""Angle of ZXZ -> the word for its momentum in the names of known formulas."""
+
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
 """Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
 
@@ -197,6 +200,8 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
     Some authors define products of inertia as integrals without the minus sign.
     """
+    if claim.context.sign_of_products == "minus":
+        return ()
     if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in _letters(formula)):
         return ()
     for edit in _edits(claim, formula):
@@ -533,6 +538,10 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
     centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
+    momentum = re.match(r"momentum of (\w+)", known.name)
+    angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
+    if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
+        return False
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -566,7 +575,9 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
     """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
     if not context:
         return True
-    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.mapping, letters)
+    return admits_name(context, known.name, _plain(named)) and admits_letters(
+        context, known.name, known.mapping, letters
+    )
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
