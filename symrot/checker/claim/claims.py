@@ -14,7 +14,14 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
-from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.matrices import (
+    bold_matrices,
+    matrices_of_entries,
+    matrix_of_entries,
+    used_columns,
+    used_matrices,
+    with_lengths,
+)
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
@@ -360,8 +367,10 @@ def claim_of_relation(
     bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
     vectors = [vector for vector in vectors if vector.name not in bold]
     define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
-    notes = [*notes, *map(_on_matrix, bold)]
     arrays = _with_arrays(relation, vectors, define)
+    solved = {side.value for side in arrays.relation[1:]} - {side.value for side in relation[1:]}
+    define = [(name, tree) for name, tree in define if name not in bold or name not in solved]
+    notes = [*notes, *(_on_matrix(name) for name in bold if name not in solved)]
     relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
     vectors = [*vectors, *map(Vector, arrays.vectors)]
     vectors = [vector for vector in vectors if vector.name not in dict(define)]
@@ -466,7 +475,8 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
     """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
-    arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
+    generic = {*matrices_of_entries(define)}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known - generic)
     known |= names | {name for name, _ in arrays.definitions}
     matrices = used_matrices(arrays.relation[1:], known)
     columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
