@@ -17,6 +17,7 @@ from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
@@ -242,6 +243,8 @@ def verdict_on_reading(
 
     ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
     """
+    if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
+        return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
@@ -260,6 +263,24 @@ def verdict_on_reading(
     ):
         notes = (*notes, UNUSED_CONTEXT)
     return replace(verdict, text=source.strip(), reading=echo, context=stated.echo, notes=notes)
+
+
+def _on_inequality(
+    reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
+    stated: Context,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on a reading that is one inequality."""
+    (chain,) = reading.lines
+    (sign,) = chain.signs
+    equation = replace(reading, lines=(replace(chain, signs=("==",)),))
+    ((claim,),) = claims_of_reading(equation, source, assume, units, stated)
+    verdict = verdict_on_inequality(claim, sign, notation.relation((OPPOSITE[sign], *chain.sides)))
+    conditions = tuple(notation.condition(text) for text in verdict.conditions)
+    echo = _text_of(reading, notation)
+    return replace(
+        verdict, text=source.strip(), reading=echo if _differs(echo, source) else "", context=stated.echo,
+        conditions=conditions, notes=(*claim.notes, *verdict.notes),
+    )  # fmt: skip
 
 
 def _differs(echo: str, source: str) -> bool:
