@@ -62,7 +62,8 @@ _NAMES_OF_MODULES = {
     "report.output": ("save",),
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
-    "viewer.show": ("in_notebook", "show"),
+    "viewer.show": ("show",),
+    "notebook.show": ("in_notebook",),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
 _RENAMED = {"dcm_of": "quaternion_to_dcm", "qmul": "quaternion_product"}

@@ -20,6 +20,7 @@ from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
 from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
 from symrot.kinematics.euler import EulerRateMatrix, dcm, rate_jacobian
 from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, quaternion_to_dcm
+from symrot.notebook.show import in_notebook
 from symrot.planning.plan import Plan
 from symrot.planning.rules import RuleOutcome
 from symrot.planning.scene_kernel import SceneKernel
@@ -39,7 +40,7 @@ from symrot.scene.samples import Table
 from symrot.scene.scene import Scene, load_scene, shipped_scenes
 from symrot.scene.tables import Initial, Output, Span
 from symrot.scene.torque import Torque
-from symrot.viewer.show import in_notebook, show
+from symrot.viewer.show import show
 from symrot.workshop.certification import (
     Audit,
     Certificate,
