@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
+from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
@@ -42,6 +43,8 @@ WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "r
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
 INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
+
+INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
 
@@ -294,6 +297,8 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
+    if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
+        verdict = Verdict("definition", reason=INDEX_CONDITION, notes=verdict.notes, dimension=verdict.dimension)
     repairs = tuple(
         repair if repair.code in AS_TYPED else _marked(repair, claim, notation) for repair in verdict.repairs
     )

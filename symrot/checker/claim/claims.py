@@ -14,6 +14,7 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with_parts
+from symrot.checker.arrays.index_notation import written_out
 from symrot.checker.arrays.matrices import (
     bold_matrices,
     matrices_of_entries,
@@ -119,7 +120,8 @@ class Claim:
         The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
         the claim is measured against.
     has_parts : bool
-        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
+        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers, or
+        one of components, made from the text's equation in index notation.
     context : Context
         What is said in words about the names of the claim, and about the body.
     """
@@ -355,6 +357,8 @@ def claim_of_relation(
     if relation[0] != "==":
         instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    relation, on_indices = written_out(relation)
+    notes = [*notes, *([on_indices] if on_indices else [])]
     names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
     words = {name for name in names if len(name) > 1 and name.isalpha()}
     matrices = {source: _matrix_given(source, words) for source in assume}
@@ -415,7 +419,7 @@ def claim_of_relation(
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
-        has_parts=unit is not None,
+        has_parts=unit is not None or bool(on_indices),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 

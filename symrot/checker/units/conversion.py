@@ -15,8 +15,8 @@ from symrot.checker.units.units import NOTHING, Dimension, raised, read_unit, ti
 from symrot.errors import InputError
 
 __all__ = [
-    "FACTORS", "ONE_PER_SECOND", "STANDARD_GRAVITY", "Measured", "UnitProduct", "measured_text", "numbers_of_latex", "numeric_end",
-    "unit_beside_letters",
+    "FACTORS", "ONE_PER_SECOND", "STANDARD_GRAVITY", "Measured", "UnitProduct", "measured_text", "numbers_of_latex",
+    "numeric_end", "unit_beside_letters",
 ]  # fmt: skip
 
 DEGREE = "deg"
