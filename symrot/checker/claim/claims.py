@@ -23,6 +23,7 @@ from symrot.checker.arrays.matrices import (
     used_matrices,
     with_lengths,
 )
+from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
@@ -63,6 +64,8 @@ __all__ = [
 
 
 SIDES = ("left", "right")
+
+ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
 
 
 @dataclass(frozen=True)
@@ -365,7 +368,10 @@ def claim_of_relation(
     assume = [source for source in assume if matrices[source] is None]
     define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
     hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
-    unit = imaginary_unit([*relation[1:], *context])
+    relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
+    define = [*pauli, *define]
+    notes = [*notes, *([ON_PAULI] if pauli else [])]
+    unit = None if pauli else imaginary_unit([*relation[1:], *context])
     if unit is not None and not is_complex(relation[1:], str(unit.value)):
         unit = None
     if unit is not None:
