@@ -44,11 +44,11 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
     if 3 ** len(indices) > MOST_ENTRIES:
         raise InputError(f"expected at most 4 free indices, got {len(indices)}: {', '.join(indices)}")
     values = [dict(zip(indices, choice, strict=True)) for choice in combinations("123", repeat=len(indices))]
-    sides = [[_component(side, value) for value in values] for side in (left, right)]
-    matrices = [entries[0] if not indices else _matrix(entries) for entries in sides]
+    lefts, rights = ([_component(side, value) for value in values] for side in (left, right))
+    first, second = (entries[0] if not indices else _matrix(entries) for entries in (lefts, rights))
     take = "takes" if len(indices) == 1 else "take"
     free_words = f"; {', '.join(indices)} {take} every value" if indices else ""
-    return (sign, *matrices), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
+    return (sign, first, second), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
 
 
 def has_index_symbols(relation: Relation) -> bool:
