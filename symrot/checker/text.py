@@ -277,7 +277,8 @@ def _on_inequality(
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
     ((claim,),) = claims_of_reading(equation, source, assume, units, stated)
-    verdict = verdict_on_inequality(claim, sign, notation.relation((OPPOSITE[sign], *chain.sides)))
+    left, right = chain.sides
+    verdict = verdict_on_inequality(claim, sign, notation.relation((OPPOSITE[sign], left, right)))
     conditions = tuple(notation.condition(text) for text in verdict.conditions)
     echo = _text_of(reading, notation)
     return replace(
