@@ -52,6 +52,7 @@ _NAMES_OF_MODULES = {
         "certify",
         "largest_box",
     ),
+    "workshop.sympy_mechanics": ("from_sympy", "to_sympy"),
     "workshop.emit": ("Emitted", "emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
     "propagation.method": ("METHODS",),

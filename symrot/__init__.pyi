@@ -53,6 +53,7 @@ from symrot.workshop.certification import (
     largest_box,
 )
 from symrot.workshop.emit import Emitted, emit, explain, kernel_names, plan
+from symrot.workshop.sympy_mechanics import from_sympy, to_sympy
 
 __version__: str
 
@@ -126,6 +127,7 @@ __all__ = [
     "euler_equations",
     "exercise",
     "explain",
+    "from_sympy",
     "grade",
     "identify",
     "in_notebook",
@@ -148,4 +150,5 @@ __all__ = [
     "show",
     "singularity_dossier",
     "solid",
+    "to_sympy",
 ]
