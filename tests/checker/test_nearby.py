@@ -126,7 +126,7 @@ def test_the_campaign_compares_diagnoses_and_repairs_with_the_corpus():
 @pytest.mark.parametrize("claim", ["I_zz = π ρ h D^4/32", "I = m(a²+b²)/6", "I = m D²/2", "I = m a²/20"])
 def test_a_moment_of_an_unknown_body_is_not_accused(claim):
     """The moments of a cylinder by its diameter, of a triangular plate about its right corner, of a tetrahedron."""
-    assert symrot.check(claim).verdict == "definition"
+    assert symrot.check(claim).verdict in ("definition", "recognised")
 
 
 @pytest.mark.parametrize(("claim", "code", "repaired"), [

@@ -359,7 +359,7 @@ def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Ite
         yield Variant(Change(_inverted(node), "wrong_symbol", cost), tuple(1 / value for value in values))
     cost = COST["solved_factor"] + COST["per_piece_added"]
     for atom, factors in _factors(letters):
-        for power in (1, -1, 2, -2):
+        for power in (1, -1, 2, -2) if all(factors) else (1, 2):
             factor = atom if abs(power) == 1 else Node("power", None, (atom, number(2)))
             factor = factor if power > 0 else Node("inv", None, (factor,))
             made = tuple(value * other**power for value, other in zip(values, factors, strict=True))

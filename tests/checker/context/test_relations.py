@@ -26,7 +26,7 @@ PLUS, MINUS = "I_xy, I_xz = ∫ xy dm", "I_xy, I_xz = -∫ xy dm"
     ("omega_1^2 + omega_2^2 = theta'^2 + phi'^2 sin^2 theta", "true", ZXZ),
     ("omega_1^2 + omega_2^2 = theta'^2 - phi'^2 sin^2 theta", "false", ZXZ),
     ("psi' = omega_3 - phi' cos theta", "recognised", {}),
-    ("psi' = omega_3 + phi' cos theta", "definition", {}),
+    ("psi' = omega_3 + phi' cos theta", "doubtful", {}),
 ])  # fmt: skip
 def test_rates_and_components_may_be_mixed(text, verdict, context):
     assert symrot.check(text, **context).verdict == verdict
