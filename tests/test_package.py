@@ -33,6 +33,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"ensemble"},
     {"viewer"},
     {"figures"},
+    {"lessons"},
     {"report"},
     {"workshop"},
     {"bench"},

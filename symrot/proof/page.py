@@ -52,6 +52,9 @@ class Step:
         Book and page, if the step is printed elsewhere.
     via : tuple of (str, Expr, Expr)
         Proven intermediate equations (words, left, right), for the page that shows the step in detail.
+    board : tuple of (str, str)
+        The proof as a teacher writes it on the board: reasons, and expressions in LaTeX that lead from the left side to
+        the right one. Each was parsed and proven equal to the left side.
     printed : (bool, bool)
         For each side: True if the page displays the proven expression itself, or a form that was parsed and proven
         equal to the expression; False if the page displays a name or words instead.
@@ -75,6 +78,7 @@ class Step:
     source: str = ""
     via: tuple[tuple[str, Any, Any], ...] = ()
     printed: tuple[bool, bool] = (True, True)
+    board: tuple[tuple[str, str], ...] = ()
 
 
 class Drawing(Protocol):
@@ -140,6 +144,10 @@ class Page:
         Headings, passages, steps and figures, in order.
     first : int
         The number of the first step; not 1 on a page with a part of a derivation.
+    opening : list
+        What stands above the paragraph about the subject: paragraphs and figures.
+    closing : list
+        What stands below the steps and the units: headings and paragraphs.
     file : str
         The path of the catalogue file, relative to the folder of symrot; empty for a page outside the catalogue.
     """
@@ -151,6 +159,8 @@ class Page:
     items: list[Section | Passage | Step | Figure] = field(default_factory=list)
     first: int = 1
     file: str = ""
+    opening: list[Passage | Figure] = field(default_factory=list)
+    closing: list[Section | Passage] = field(default_factory=list)
 
     @property
     def steps(self) -> tuple[Step, ...]:

@@ -127,6 +127,9 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
     """Yield the place of each text of a page (after ``#``), its title, and the text, as Markdown."""
     yield "", page.title, page.about
+    for item in page.opening:
+        yield ("", f"{page.title}, figure", f"{item.title}. {item.caption}") if isinstance(item, Figure) else (
+            "", page.title, item.text)  # fmt: skip
     number, sections = page.first - 1, 0
     heading = page.title
     for item in page.items:
@@ -141,6 +144,11 @@ def _words(page: Page) -> Iterator[tuple[str, str, str]]:
             yield "", f"{heading}, figure", f"{item.title}. {item.caption}"
         elif isinstance(item, Passage):
             yield f"#section-{sections}" if sections else "", heading, item.text
+    for closing in page.closing:
+        if isinstance(closing, Section):
+            heading = f"{page.title}: {closing.title}"
+        else:
+            yield "", heading, closing.text
 
 
 def _plain(text: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
-from symrot.proof.page import Figure, Page, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages.math_font import face
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
@@ -49,6 +49,8 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
     It is self-contained unless ``font`` is the address of the mathematical font.
     """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
+    for opening in page.opening:
+        parts += [_figure(opening)] if isinstance(opening, Figure) else _passage(opening)
     if page.about:
         parts.append(f"<p>{prose(page.about)}</p>")
     if page.source:
@@ -68,15 +70,24 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
                 f'<p class="remarks">{prose(" ".join(remarks(item)))}</p>\n</section>'
             )
         elif isinstance(item, Figure):
-            parts.append(f"<figure>{item.svg()}<figcaption>{prose(item.caption)}</figcaption></figure>")
+            parts.append(_figure(item))
         else:
-            parts.append(f"<p>{prose(item.text)}</p>")
-            parts += [display(text) for text in passage_equations(item)]
+            parts += _passage(item)
     used = units(page)
     if used:
         parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(prose(used))}.</p>")
+    for closing in page.closing:
+        parts += [f"<h2>{prose(closing.title)}</h2>"] if isinstance(closing, Section) else _passage(closing)
     parts.append(f"<footer>{prose(footer(page))}</footer>")
     return document(page.title, [*parts, *filter(None, [bottom])], face(font) + style)
+
+
+def _figure(figure: Figure) -> str:
+    return f"<figure>{figure.svg()}<figcaption>{prose(figure.caption)}</figcaption></figure>"
+
+
+def _passage(passage: Passage) -> list[str]:
+    return [f"<p>{prose(passage.text)}</p>", *map(display, passage_equations(passage))]
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:

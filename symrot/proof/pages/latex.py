@@ -3,7 +3,7 @@
 import re
 
 from symrot.proof.notation.mathml import rows
-from symrot.proof.page import Figure, Page, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["latex_document"]
@@ -29,6 +29,7 @@ LATEX_HEAD = r"""\documentclass[a4paper]{article}
 def latex_document(page: Page) -> str:
     """Return a page as a LaTeX document."""
     parts = [LATEX_HEAD + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
+    parts += [_figure(item) if isinstance(item, Figure) else _passage(item) for item in page.opening]
     if page.about:
         parts.append(_prose(page.about))
     if page.source:
@@ -46,10 +47,13 @@ def latex_document(page: Page) -> str:
         elif isinstance(item, Figure):
             parts.append(_figure(item))
         else:
-            parts.append("\n".join([_prose(item.text), *map(_display, passage_equations(item))]))
+            parts.append(_passage(item))
     used = units(page)
     if used:
         parts.append(rf"\paragraph{{Units}} of the symbols in the proofs: {_prose(used)}.")
+    parts += [
+        rf"\section*{{{_prose(item.title)}}}" if isinstance(item, Section) else _passage(item) for item in page.closing
+    ]
     parts += [r"\medskip\hrule\medskip", _prose(footer(page)), r"\end{document}"]
     return "\n\n".join(parts) + "\n"
 
@@ -59,6 +63,10 @@ def _figure(figure: Figure) -> str:
     path = figure.file.removesuffix(".svg")
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
+
+
+def _passage(passage: Passage) -> str:
+    return "\n".join([_prose(passage.text), *map(_display, passage_equations(passage))])
 
 
 def _display(latex: str) -> str:
