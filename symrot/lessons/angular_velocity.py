@@ -46,7 +46,7 @@ LESSONS = {
             "In the body, the rate of the precession appears with the sine and the cosine of the spin. It is easy to "
             "exchange the two.",
             "omega_1 == dphi*sin(theta)*cos(psi) + dtheta*cos(psi)",
-            given=("omega_1 == dphi*sin(theta)*sin(psi) + dtheta*cos(psi)",),
+            facts=("omega_1 == dphi*sin(theta)*sin(psi) + dtheta*cos(psi)",),
             lesson="Check with no spin, $\\psi = 0$: then axis 1 is the line of nodes, and only $\\dot\\theta$ is "
             "about it.",
         ),

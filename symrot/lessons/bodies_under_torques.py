@@ -15,7 +15,7 @@ LESSONS = {
         mistake=Mistake(
             "The point of support is fixed, so students take the weight to have no moment about it.",
             "cross(Matrix([a, b, c]), Matrix([0, 0, -W])) == Matrix([0, 0, 0])",
-            given=("W > 0",),
+            facts=("W > 0",),
             lesson="Only the moment about the vertical is zero, so only that component of angular momentum is "
             "constant.",
         ),
@@ -31,7 +31,7 @@ LESSONS = {
             "it "
             "for every top.",
             "n == W*c/p",
-            given=("A*n**2*cos(theta) - p*n + W*c == 0", "A > 0", "p > 0", "W > 0", "c > 0"),
+            facts=("A*n**2*cos(theta) - p*n + W*c == 0", "A > 0", "p > 0", "W > 0", "c > 0"),
             lesson="The condition is quadratic: an inclined top has two rates of steady precession.",
         ),
         scene="heavy_top_loops",
@@ -59,7 +59,7 @@ LESSONS = {
         mistake=Mistake(
             "The angular momentum that the torque turns is that of the spin. Students use the moment across the axle.",
             "dphi == W*c/(A*dpsi)",
-            given=("C*dphi*dpsi == W*c", "A > 0", "C > 0", "W > 0", "c > 0", "dpsi > 0"),
+            facts=("C*dphi*dpsi == W*c", "A > 0", "C > 0", "W > 0", "c > 0", "dpsi > 0"),
             lesson="With a level axle the moment $A$ across it does not enter at all.",
         ),
         scene="precessing_wheel",
@@ -90,7 +90,7 @@ LESSONS = {
             "The wheel is inside, so students leave its angular momentum out of the gyroscopic term.",
             "cross(Matrix([a, b, c]), Matrix([A*a, A*b, A*c + h])) == cross(Matrix([a, b, c]), Matrix([A*a, A*b, "
             "A*c]))",
-            given=("A > 0", "h > 0"),
+            facts=("A > 0", "h > 0"),
             repair=None,
             lesson="The body turns the angular momentum of the wheel as well, and that takes a torque.",
         ),
@@ -104,7 +104,7 @@ LESSONS = {
         mistake=Mistake(
             "The torque goes with $\\sin\\theta\\cos\\theta$. Students take a pendulum's $\\sin\\theta$.",
             "3*n**2*sin(theta)*cos(theta) == 3*n**2*sin(theta)",
-            given=("n > 0",),
+            facts=("n > 0",),
             repair=None,
             lesson="The tide pulls both ends: at a right angle the torque is zero again, unlike that of a pendulum.",
         ),

@@ -9,7 +9,7 @@ LESSONS = {
         mistake=Mistake(
             "Friction does no work, so students leave it out of the equation of motion.",
             "a == g*sin(alpha)",
-            given=("m*a == m*g*sin(alpha) - F", "F*R == C*a/R", "m > 0", "R > 0", "C > 0", "g > 0"),
+            facts=("m*a == m*g*sin(alpha) - F", "F*R == C*a/R", "m > 0", "R > 0", "C > 0", "g > 0"),
             lesson="Friction does no work, but it slows the centre and spins the body.",
         ),
         worked="acceleration_on_incline",
@@ -21,7 +21,7 @@ LESSONS = {
         mistake=Mistake(
             "With the ring held, students use the ratio of a simple pair of gears.",
             "omega_C == omega_S*Z_S/Z_R",
-            given=("Z_S*(omega_S - omega_C) == Z_R*omega_C", "Z_S > 0", "Z_R > 0"),
+            facts=("Z_S*(omega_S - omega_C) == Z_R*omega_C", "Z_S > 0", "Z_R > 0"),
             lesson="The carrier moves, so the rates must be taken relative to it.",
         ),
         worked="ring_fixed",
@@ -33,7 +33,7 @@ LESSONS = {
         mistake=Mistake(
             "If the rod is long it is nearly level. Students leave its inclination out.",
             "r*cos(phi) + sqrt(L**2 - r**2*sin(phi)**2) == r*cos(phi) + L",
-            given=("L == r + d", "d > 0", "r > 0"),
+            facts=("L == r + d", "d > 0", "r > 0"),
             lesson="At the dead centres the two agree, between them they do not.",
         ),
         worked="piston_speed",

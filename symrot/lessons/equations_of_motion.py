@@ -13,7 +13,7 @@ LESSONS = {
             "The gyroscopic terms look alike, and their signs follow the cyclic order of the axes. Students turn one "
             "around.",
             "A*domega_1 == (C - B)*omega_2*omega_3",
-            given=("A*domega_1 == (B - C)*omega_2*omega_3", "A > 0", "B > 0", "C > 0"),
+            facts=("A*domega_1 == (B - C)*omega_2*omega_3", "A > 0", "B > 0", "C > 0"),
             repair=1,
             lesson="In the equation of axis 1 the difference is $B - C$; the others follow by going round, "
             "$1 \\to 2 \\to 3 \\to 1$.",
@@ -40,7 +40,7 @@ LESSONS = {
             "the "
             "third axis of the body.",
             "Q_phi == tau_3",
-            given=("Q_phi == tau_1*sin(psi)*sin(theta) + tau_2*cos(psi)*sin(theta) + tau_3*cos(theta)",),
+            facts=("Q_phi == tau_1*sin(psi)*sin(theta) + tau_2*cos(psi)*sin(theta) + tau_3*cos(theta)",),
             lesson="Each angle has its own axis, and its force is the torque about that axis.",
         ),
         scene="heavy_top_loops",
@@ -86,7 +86,7 @@ LESSONS = {
             "conclude "
             "that it gives the same energy.",
             "m*v**2/2 + C*omega**2/2 == J**2/(2*m)",
-            given=("v == J/m", "omega == J*h/C", "m > 0", "C > 0", "J > 0", "h > 0"),
+            facts=("v == J/m", "omega == J*h/C", "m > 0", "C > 0", "J > 0", "h > 0"),
             lesson="The place that is struck moves farther, so the blow does more work.",
         ),
         worked="struck_rod",

@@ -13,7 +13,7 @@ LESSONS = {
         mistake=Mistake(
             "The derivative of the sine is the cosine. Students expect the same of sn and cn.",
             "dsn == cn",
-            given=("dsn == cn*dn", "dn > 0", "cn > 0"),
+            facts=("dsn == cn*dn", "dn > 0", "cn > 0"),
             lesson="The factor dn is 1 only at $\\mu = 0$, where sn is the sine.",
         ),
         scene="tumbling_prism_largest",
@@ -37,7 +37,7 @@ LESSONS = {
             "The body turns about its angular momentum with the constant part $H/C$. Students forget the part that "
             "changes.",
             "dpsi == H/C",
-            given=("dpsi == H/C + (2*T - H**2/C)/(H + L_3)", "H > 0", "C > 0", "L_3 > 0", "T > 0"),
+            facts=("dpsi == H/C + (2*T - H**2/C)/(H + L_3)", "H > 0", "C > 0", "L_3 > 0", "T > 0"),
             lesson="The second part is zero only if the body rotates about its third axis alone.",
         ),
         scene="axisymmetric_satellite",
@@ -105,7 +105,7 @@ LESSONS = {
             "A rod that hangs from its end is not a point at its lower end. Students use the formula of the simple "
             "pendulum.",
             "rate**2 == g/L",
-            given=("rate**2 == m*g*(L/2)/I_0", "I_0 == m*L**2/3", "m > 0", "g > 0", "L > 0"),
+            facts=("rate**2 == m*g*(L/2)/I_0", "I_0 == m*L**2/3", "m > 0", "g > 0", "L > 0"),
             lesson="A rod swings as a simple pendulum of two thirds of its length.",
         ),
         worked="period_of_rod",
@@ -120,7 +120,7 @@ LESSONS = {
             "to the "
             "spin.",
             "omega_3**2 == 4*A*W*c/C",
-            given=("p**2 == 4*A*W*c", "p == C*omega_3", "A > 0", "C > 0", "W > 0", "c > 0"),
+            facts=("p**2 == 4*A*W*c", "p == C*omega_3", "A > 0", "C > 0", "W > 0", "c > 0"),
             lesson="Check the units: $A W c / C$ is a torque, not the square of a rate.",
         ),
         scene="heavy_top_loops",
@@ -144,7 +144,7 @@ LESSONS = {
         mistake=Mistake(
             "Students take over the rate of the free symmetric body and forget the wheel.",
             "rate == (C - A)*omega_3/A",
-            given=("rate == ((C - A)*omega_3 + h)/A", "A > 0", "C > 0", "h > 0"),
+            facts=("rate == ((C - A)*omega_3 + h)/A", "A > 0", "C > 0", "h > 0"),
             lesson="The wheel adds its angular momentum, and can make the rate zero.",
         ),
         scene="axisymmetric_satellite",
@@ -175,7 +175,7 @@ LESSONS = {
         mistake=Mistake(
             "The friction $b$ is divided by the moment of inertia in the exponent. Students leave the moment out.",
             "C*diff(tau/b*(1 - exp(-b*t)), t) == tau - b*(tau/b*(1 - exp(-b*t)))",
-            given=("C > 0", "b > 0", "tau > 0"),
+            facts=("C > 0", "b > 0", "tau > 0"),
             repair=None,
             lesson="A heavy rotor takes longer: the time constant is $C/b$.",
         ),

@@ -21,7 +21,7 @@ LESSONS = {
             "The length of the angular momentum is constant, so students take the length of the angular velocity to be "
             "constant too.",
             "omega_1*domega_1 + omega_2*domega_2 + omega_3*domega_3 == 0",
-            given=(
+            facts=(
                 "domega_1 == (B - C)*omega_2*omega_3/A",
                 "domega_2 == (C - A)*omega_3*omega_1/B",
                 "domega_3 == (A - B)*omega_1*omega_2/C",
@@ -69,7 +69,7 @@ LESSONS = {
             "The spin $\\omega_3$ and the rate $\\dot\\psi$ of the spin angle have similar names. Students set them "
             "equal.",
             "omega_3 == dpsi",
-            given=("omega_3 == dpsi + dphi*cos(theta)",),
+            facts=("omega_3 == dpsi + dphi*cos(theta)",),
             lesson="The precession has a part along the axis too.",
         ),
         scene="spin_up",
@@ -91,7 +91,7 @@ LESSONS = {
             "Feynman told of a plate in the cafeteria of Cornell. A plate has $C = 2 A$, and for a small wobble the "
             "precession is at the rate $C \\omega_3 / A$. His story had the ratio upside down.",
             "dphi == omega_3/2",
-            given=("dphi == C*omega_3/A", "C == 2*A", "A > 0"),
+            facts=("dphi == C*omega_3/A", "C == 2*A", "A > 0"),
             lesson="The plate wobbles twice as fast as it spins.",
         ),
         scene="axisymmetric_satellite",
@@ -121,7 +121,7 @@ LESSONS = {
             "The two moments below the line are those of the other two axes. Students put the moment of the spin axis "
             "there, which they have just used.",
             "rate**2 == Omega**2*(A - B)*(B - C)/B**2",
-            given=("rate**2 == Omega**2*(A - B)*(B - C)/(A*C)", "A > 0", "B > 0", "C > 0"),
+            facts=("rate**2 == Omega**2*(A - B)*(B - C)/(A*C)", "A > 0", "B > 0", "C > 0"),
             lesson="The disturbance is across the axis, so it meets the moments across the axis.",
         ),
         scene="t_handle",
@@ -156,7 +156,7 @@ LESSONS = {
             "which is "
             "twice the energy.",
             "d == T/H",
-            given=("d*H == 2*T", "H > 0", "T > 0"),
+            facts=("d*H == 2*T", "H > 0", "T > 0"),
             lesson="Kinetic energy has a half, $T = \\frac12\\,\\omega \\cdot L$; the distance has none.",
         ),
         scene="t_handle",
@@ -179,7 +179,7 @@ LESSONS = {
         mistake=Mistake(
             "The function dn looks like a cosine. Students forget its parameter.",
             "dn**2 == 1 - sn**2",
-            given=("dn**2 == 1 - mu*sn**2",),
+            facts=("dn**2 == 1 - mu*sn**2",),
             lesson="That is the function cn. The two are equal only on the separatrix, at $\\mu = 1$.",
         ),
         scene="tumbling_prism_largest",

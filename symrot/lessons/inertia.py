@@ -26,7 +26,7 @@ LESSONS = {
         mistake=Mistake(
             "Students add up products where squares belong.",
             "T == (A*omega_1 + C*omega_3)**2/(2*(A + C))",
-            given=("T == A*omega_1**2/2 + C*omega_3**2/2", "A > 0", "C > 0"),
+            facts=("T == A*omega_1**2/2 + C*omega_3**2/2", "A > 0", "C > 0"),
             lesson="Energies about principal axes add; angular velocities do not add into one with a common moment.",
         ),
         scene="t_handle",
@@ -51,7 +51,7 @@ LESSONS = {
             "centre, "
             "to another point, at $b$, with the square of the distance between the two.",
             "I_2 == I_1 + m*(b - a)**2",
-            given=("I_1 == I_0 + m*a**2", "I_2 == I_0 + m*b**2", "m > 0", "I_0 > 0"),
+            facts=("I_1 == I_0 + m*a**2", "I_2 == I_0 + m*b**2", "m > 0", "I_0 > 0"),
             lesson="Go back to the centre of mass first, then out again.",
         ),
         scene="heavy_top_loops",
@@ -78,7 +78,7 @@ LESSONS = {
             "gets the wrong sign.",
             "(transpose(Rz(alpha))*diag(A, B, C)*Rz(alpha))*Matrix([1, 0, 0])"
             " == Matrix([A*cos(alpha)**2 + B*sin(alpha)**2, (A - B)*sin(alpha)*cos(alpha), 0])",
-            given=("A > 0", "B > 0", "C > 0"),
+            facts=("A > 0", "B > 0", "C > 0"),
             lesson="With $R$ from body to space, $I_s = R\\,I\\,R^{\\mathsf T}$ acts on vectors of space.",
         ),
         worked="principal_moment",
@@ -93,7 +93,7 @@ LESSONS = {
             "if "
             "the disk were a rod.",
             "integrate(r**2*m/R, (r, 0, R)) == m*R**2/2",
-            given=("m > 0", "R > 0"),
+            facts=("m > 0", "R > 0"),
             lesson="Outer rings are longer, so they have more mass: half of $m R^2$ for the disk, a third for the rod.",
         ),
         scene="axisymmetric_satellite",

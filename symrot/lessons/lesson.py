@@ -18,7 +18,7 @@ class Mistake:
         How one comes to write it: a sentence before the formula.
     claim : str
         The formula in the language of claims.
-    given : tuple of str
+    facts : tuple of str
         Hypotheses of the claim.
     body : str
         The body in words, as ``symrot check --body`` takes it.
@@ -29,13 +29,13 @@ class Mistake:
 
     Examples
     --------
-    >>> Mistake("The square is lost.", "sin(x)**2 + cos(x) == 1").given
+    >>> Mistake("The square is lost.", "sin(x)**2 + cos(x) == 1").facts
     ()
     """
 
     words: str
     claim: str
-    given: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
     body: str = ""
     lesson: str = ""
     repair: int | None = 0

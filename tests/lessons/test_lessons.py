@@ -51,7 +51,7 @@ def test_a_mistake_is_refuted_and_its_repair_is_true(name):
     assert verdict.counterexample is not None
     if mistake.repair is not None and verdict.repairs:
         repaired = verdict.repairs[mistake.repair].text
-        assert check(repaired, assume=mistake.given, body=mistake.body, repair=False).verdict == "true", repaired
+        assert check(repaired, assume=mistake.facts, body=mistake.body, repair=False).verdict == "true", repaired
 
 
 def test_a_true_formula_is_no_mistake():
@@ -123,4 +123,4 @@ def test_a_page_opens_with_a_question_and_closes_with_where_to_go_on(name):
 def test_the_command_that_a_page_prints_checks_the_claim():
     passages = list(mistake_passages(LESSONS["parallel_axis"].mistake))
     command = re.search(r"`(symrot check .*)`", passages[-1].text)[1]
-    assert command.count("--given") == len(LESSONS["parallel_axis"].mistake.given)
+    assert command.count("--given") == len(LESSONS["parallel_axis"].mistake.facts)

@@ -93,7 +93,8 @@ def _precession(d: Derivation) -> None:
 def _all(d: Derivation) -> None:
     d.section("All sequences")
     d.passage(
-        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles."
+        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles. "
+        "The reason is the same for all and stands at the first."
     )
     for sequence in INTRINSIC_SEQUENCES:
         q = quaternion_of_euler(sequence)

@@ -41,7 +41,7 @@ def _transposition(d: Derivation) -> None:
     d.passage(
         r"Let $\mu$ be any vector of constant components in the body. The product $\mu \cdot \omega = \mu \cdot B "
         r"\dot q$ is "
-        "put into Lagrange's operator, for every sequence:",
+        "put into Lagrange's operator, for every sequence; the reason is the same for all and stands at the first:",
         (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
     )
     for sequence in INTRINSIC_SEQUENCES:

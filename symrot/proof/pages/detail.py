@@ -68,7 +68,7 @@ def _on_board(step: Step) -> list[Passage]:
 
 def _on_one_screen(passages: list[Passage]) -> list[Passage]:
     """Return the first paragraphs, as many as fit on a screen, and a sentence that says what is left out."""
-    shown: list[Passage] = []
+    screen: list[Passage] = []
     lines = letters = 0
     for passage in passages:
         texts = list(passage_equations(passage))
@@ -78,10 +78,10 @@ def _on_one_screen(passages: list[Passage]) -> list[Passage]:
         lines += 2 + sum(len(rows(text, LINE)) + 2 for text in texts)
         if lines > LINES:
             break
-        shown.append(passage)
-    if len(shown) < len(passages):
-        shown.append(Passage(f"{'The rest' if shown else 'The calculation'} {LEFT_OUT}"))
-    return shown
+        screen.append(passage)
+    if len(screen) < len(passages):
+        screen.append(Passage(f"{'The rest' if screen else 'The calculation'} {LEFT_OUT}"))
+    return screen
 
 
 def _signs(step: Step) -> list[Passage]:

@@ -10,7 +10,7 @@ from html import escape
 from symrot.proof.notation.mathml import mathml
 from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages.math_font import face
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["display", "document", "html_document", "prose"]
 
@@ -56,7 +56,7 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
     if page.source:
         parts.append(f'<p class="source"><em>Source:</em> {prose(page.source)}.</p>')
     parts += _contents(page)
-    number, section = page.first - 1, 0
+    number, section, repeats = page.first - 1, 0, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             section += 1
@@ -66,8 +66,7 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
             parts.append(
                 f'<section class="step" id="step-{number}">\n'
                 f'<p><span class="number">{number}.</span>{prose(item.claim)}</p>\n'
-                f"{display(equation(item))}\n"
-                f'<p class="remarks">{prose(" ".join(remarks(item)))}</p>\n</section>'
+                f"{display(equation(item))}\n{_remarks(item, number in repeats)}</section>"
             )
         elif isinstance(item, Figure):
             parts.append(_figure(item))
@@ -80,6 +79,11 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
         parts += [f"<h2>{prose(closing.title)}</h2>"] if isinstance(closing, Section) else _passage(closing)
     parts.append(f"<footer>{prose(footer(page))}</footer>")
     return document(page.title, [*parts, *filter(None, [bottom])], face(font) + style)
+
+
+def _remarks(step: Step, is_repetition: bool) -> str:
+    text = prose(" ".join(remarks(step, is_repetition)))
+    return f'<p class="remarks">{text}</p>\n' if text else ""
 
 
 def _figure(figure: Figure) -> str:

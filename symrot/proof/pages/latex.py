@@ -4,7 +4,7 @@ import re
 
 from symrot.proof.notation.mathml import rows
 from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["latex_document"]
 
@@ -34,7 +34,7 @@ def latex_document(page: Page) -> str:
         parts.append(_prose(page.about))
     if page.source:
         parts.append(rf"\emph{{Source:}} {_prose(page.source)}.")
-    number = page.first - 1
+    number, repeats = page.first - 1, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             parts.append(rf"\section*{{{_prose(item.title)}}}")
@@ -42,7 +42,7 @@ def latex_document(page: Page) -> str:
             number += 1
             parts.append(
                 rf"\paragraph{{{number}.}} {_prose(item.claim)}" + f"\n{_display(equation(item))}\n"
-                + _prose(" ".join(remarks(item)))
+                + _prose(" ".join(remarks(item, number in repeats)))
             )  # fmt: skip
         elif isinstance(item, Figure):
             parts.append(_figure(item))

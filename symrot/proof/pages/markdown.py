@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["display", "host_safe", "markdown"]
 
@@ -21,13 +21,14 @@ def markdown(page: Page) -> str:
     if page.source:
         parts.append(f"*Source:* {page.source}.")
     parts += _contents(page)
-    number = page.first - 1
+    number, repeats = page.first - 1, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             parts.append(f"## {item.title}")
         elif isinstance(item, Step):
             number += 1
-            parts += [f"**{number}.** {item.claim}", display(equation(item)), " ".join(remarks(item))]
+            parts += [f"**{number}.** {item.claim}", display(equation(item))]
+            parts += filter(None, [" ".join(remarks(item, number in repeats))])
         elif isinstance(item, Figure):
             parts += _figure(item)
         else:
