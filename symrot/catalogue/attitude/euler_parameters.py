@@ -46,7 +46,7 @@ def _precession(d: Derivation) -> None:
                 cos(THETA / 2) * sin(total),
             ]
         ),
-        because="the formulas for sines and cosines of sums are applied",
+        because="products of sines and cosines of the outer half angles combine into those of their sum and difference",
         named=r"\begin{bmatrix} q_0 \\ q_1 \\ q_2 \\ q_3 \end{bmatrix}",
     )
     d.step(

@@ -100,12 +100,20 @@ def derive() -> Derivation:
         named=r"\dot\omega_b",
     )
     d.section("Power")
-    d.notation({"I": TENSOR}, pairs(symbols.omega_b, acceleration))
+    d.notation({"I": TENSOR, r"\dot\omega_b": acceleration}, pairs(symbols.omega_b, acceleration))
     d.step(
         "The gyroscopic term does no work: the torque alone changes the kinetic energy.",
         rate(OMEGA.dot(momentum_b) / 2, pairs(symbols.omega_b, acceleration)),
         OMEGA.dot(TORQUE),
         because=r"$\omega \cdot (\omega \times I\,\omega) = 0$, and the tensor is symmetric",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+        board=(
+            (
+                "The tensor is symmetric, so the two terms of the product rule are equal:",
+                r"\omega_b \cdot I\,\dot\omega_b",
+            ),
+            ("Euler's equations:", r"\omega_b \cdot \left( \tau_b - \omega_b \times I\,\omega_b \right)"),
+            ("A cross product is perpendicular to its factors:", r"\omega_b \cdot \tau_b"),
+        ),
     )
     return d

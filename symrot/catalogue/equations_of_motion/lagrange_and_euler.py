@@ -74,7 +74,7 @@ def _equations(d: Derivation) -> None:
         "Lagrange's operator on the kinetic energy, full tensor.",
         lagrange(omega.dot(TENSOR * omega) / 2),
         body.T * (TENSOR * rate(omega, MOTION) + omega.cross(TENSOR * omega)),
-        because="both sides are expanded in angles, rates and accelerations",
+        because="both sides are written out in angles, rates and accelerations, and all their terms agree",
         named=r"E \left[ \tfrac12\,\omega \cdot I\,\omega \right]",
         display=r"B^{\mathsf T} \left( I\,\dot\omega + \omega \times I\,\omega \right)",
     )
