@@ -29,6 +29,12 @@ LESSONS = {
             ),
         ),
         topic="pendulums",
+        library=(
+            "Sums of arguments",
+            "The zeta function",
+            "Theta functions",
+            "On the imaginary axis",
+        ),
     ),
     "free_body_attitude": Lesson(
         question="The angular velocity of a free body is known at all times. Which way does the body point?",
@@ -52,6 +58,10 @@ LESSONS = {
         ),
         kernel="rigid_body_principal",
         topic="free_bodies",
+        library=(
+            "The third angle as an integral of the third kind",
+            "The third angle without an integral",
+        ),
     ),
     "free_body_separatrix": Lesson(
         question="Can a free body flip over exactly once?",
@@ -97,6 +107,10 @@ LESSONS = {
         ),
         kernel="heavy_top_symmetric",
         topic="heavy_tops",
+        library=(
+            "The attitude",
+            "No integral",
+        ),
     ),
     "pendulum": Lesson(
         question="How long does a pendulum take for a large swing?",
@@ -192,5 +206,13 @@ LESSONS = {
         ),
         kernel="torque_constant_body",
         topic="euler_equations",
+        library=(
+            "The attitude in closed form",
+            "Far from resonance",
+            "The coefficients far from resonance",
+            "Near resonance",
+            "A weak torque",
+            "Between two times",
+        ),
     ),
 }

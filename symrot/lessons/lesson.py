@@ -107,6 +107,8 @@ class Lesson:
         Name of the kernel that computes the result; empty if there is none.
     topic : str
         Topic of exercises.
+    library : tuple of str
+        Titles of the sections that only the library needs, to evaluate motions; a course can leave them out.
 
     Examples
     --------
@@ -122,3 +124,4 @@ class Lesson:
     worked: str = ""
     kernel: str = ""
     topic: str = ""
+    library: tuple[str, ...] = ()

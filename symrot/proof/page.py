@@ -148,6 +148,8 @@ class Page:
         What stands above the paragraph about the subject: paragraphs and figures.
     closing : list
         What stands below the steps and the units: headings and paragraphs.
+    beyond : int
+        How many of the steps a course can leave out, because only the library needs them.
     file : str
         The path of the catalogue file, relative to the folder of symrot; empty for a page outside the catalogue.
     """
@@ -161,6 +163,14 @@ class Page:
     file: str = ""
     opening: list[Passage | Figure] = field(default_factory=list)
     closing: list[Section | Passage] = field(default_factory=list)
+    beyond: int = 0
+
+    @property
+    def extent(self) -> str:
+        """The number of steps in words, for a table of contents."""
+        count = len(self.steps)
+        words = f"{count} {'step' if count == 1 else 'steps'}"
+        return f"{words}, {self.beyond} of them for the library only" if self.beyond else words
 
     @property
     def steps(self) -> tuple[Step, ...]:

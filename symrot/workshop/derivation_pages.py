@@ -96,7 +96,7 @@ def pages(say: Say = _quiet) -> dict[str, str]:
     ]
     for part, members in READING_ORDER.items():
         lines += ["", f"## {part}", ""]
-        lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
+        lines += [f"- [{derived[name].title}]({name}.md), {derived[name].extent}" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
     texts = {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
     return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}

@@ -36,7 +36,7 @@ figure { margin: 1.6rem 0; text-align: center; break-inside: avoid; }
 figure svg { max-width: 100%; height: auto; }
 figcaption { font-size: 0.95rem; text-align: left; margin-top: 0.4rem; }
 .whole { white-space: nowrap; }
-code { font-size: 0.9em; }
+code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
 a { color: inherit; }
 @media print { .display { overflow: visible; } .step { break-inside: avoid; } }

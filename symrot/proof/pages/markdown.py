@@ -14,8 +14,8 @@ MANY_SECTIONS = 8
 def markdown(page: Page) -> str:
     """Return a page as Markdown; display formulas are between ``$$`` on separate lines."""
     parts = [f"# {page.title}"]
-    for item in page.opening:
-        parts += _figure(item) if isinstance(item, Figure) else _passage(item)
+    for opening in page.opening:
+        parts += _figure(opening) if isinstance(opening, Figure) else _passage(opening)
     if page.about:
         parts.append(page.about)
     if page.source:
