@@ -1,5 +1,6 @@
 """The section "With numbers" of a page: formulas of its steps, with the numbers of a scene."""
 
+import re
 from collections.abc import Iterator
 from functools import cache
 
@@ -87,8 +88,14 @@ def _of_scene(page: Page, lesson: Lesson) -> Iterator[Passage]:
     yield Passage(f"The scene `{lesson.scene}` ({title}) has {listed}.")
     for number, expression, value in results:
         text = formula(expression)
-        middle = f"{text} = " if len(text) <= LONGEST and expression.free_symbols else ""
+        is_news = expression.free_symbols and _bare(text) != _bare(number.name)
+        middle = f"{text} = " if is_news and len(text) <= LONGEST else ""
         yield Passage(number.words, ((number.name, f"{middle}{_quantity(value, number.unit)}"),))
+
+
+def _bare(latex: str) -> str:
+    """Return LaTeX without braces and blanks, to compare two ways to write one formula."""
+    return re.sub(r"[{} ]|\\,", "", latex)
 
 
 def _quantity(value: Expr, unit: str) -> str:

@@ -1,6 +1,10 @@
 """Lessons: every link leads somewhere, every mistake is refuted, every number is what the motion of the scene has."""
 
+import os
 import re
+import subprocess
+import sys
+from dataclasses import replace
 
 import pytest
 from sympy import Rational, sqrt
@@ -13,6 +17,7 @@ from symrot.kernels.library import kernel_names
 from symrot.lessons.lesson import Mistake, Number
 from symrot.lessons.mistakes import mistake_passages, refutation
 from symrot.lessons.numbers import value_of
+from symrot.lessons.page import taught
 from symrot.lessons.scene_values import scene_values
 from symrot.lessons.table import LESSONS
 from symrot.proof.page import Figure, Section
@@ -124,3 +129,23 @@ def test_the_command_that_a_page_prints_checks_the_claim():
     passages = list(mistake_passages(LESSONS["parallel_axis"].mistake))
     command = re.search(r"`(symrot check .*)`", passages[-1].text)[1]
     assert command.count("--given") == len(LESSONS["parallel_axis"].mistake.facts)
+
+
+def test_a_lesson_does_not_depend_on_hashing():
+    program = (
+        "import sys; from symrot.catalogue import derivation; from symrot.lessons.page import taught;"
+        "sys.stdout.write(repr([taught(derivation(name)).closing for name in sys.argv[1:]]))"
+    )
+    chosen = ["kinetic_energy", "rolling", "intermediate_axis", "gravity_gradient"]
+    environment = os.environ | {"PYTHONHASHSEED": "20"}
+    command = [sys.executable, "-c", program, *chosen]
+    text = subprocess.run(command, env=environment, capture_output=True, check=True, text=True).stdout
+    assert text == repr([taught(derivation(name)).closing for name in chosen])
+
+
+def test_a_section_for_the_library_must_exist(monkeypatch):
+    page = derivation("driven_rotation")
+    assert taught(page).beyond == len(page.steps) - 12
+    monkeypatch.setitem(LESSONS, "driven_rotation", replace(LESSONS["driven_rotation"], library=("No such",)))
+    with pytest.raises(InputError, match=r"expected sections of the page, got \['No such'\]"):
+        taught(page)
