@@ -52,6 +52,7 @@ _NAMES_OF_MODULES = {
         "certify",
         "largest_box",
     ),
+    "workshop.sympy_mechanics": ("from_sympy", "to_sympy"),
     "workshop.emit": ("Emitted", "emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
     "propagation.method": ("METHODS",),
@@ -62,7 +63,8 @@ _NAMES_OF_MODULES = {
     "report.output": ("save",),
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
-    "viewer.show": ("in_notebook", "show"),
+    "viewer.show": ("show",),
+    "notebook.show": ("in_notebook",),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
 _RENAMED = {"dcm_of": "quaternion_to_dcm", "qmul": "quaternion_product"}

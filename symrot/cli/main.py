@@ -241,7 +241,9 @@ def _derive(options: Namespace) -> int:
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
-            raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
+            raise InputError(
+                f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, but it is missing"
+            )
         different = derivation_pages.check(directory, progress)
         progress("")
         sys.stdout.write("".join(diff for _, diff in different))

@@ -10,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import symrot
 from symrot.ensemble.motions import Followed, Problem, follow
 from symrot.ensemble.quantities import Source
 from symrot.ensemble.variation import read_times, read_variation
@@ -161,6 +162,9 @@ class Ensemble(MotionSamples):
         ending = f", {broken} stopped early" if broken else ""
         count = self.t.shape[-1]
         return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {count} samples, {self.method}{ending}>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def scene(self) -> Scene:

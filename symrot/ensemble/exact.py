@@ -274,7 +274,7 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield the trajectories of one closed form in groups: row indices, a batch, and for which rows it is valid.
+    """Yield groups of trajectories of one closed form: row indices, their batch, and for which rows the batch is valid.
 
     The batch is None if the motions of the group must be computed one by one.
     """

@@ -139,7 +139,10 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants, if nearly doubles, that do not vary in the field of the constant ``name``."""
+        """Return the fixed constants of the field to which the varying constant ``name`` belongs.
+
+        Constants that are not equal to a double within 2^-200 are left out.
+        """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -360,7 +363,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
-    """Return the places of all constants that may vary in a scene, by their names in the plan."""
+    """Return, for each constant that may vary in a scene, its place there, by the name of the constant in the plan."""
     places = {name: _Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):

@@ -11,6 +11,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan, structure_key
@@ -44,6 +45,7 @@ class Propagator:
     Attributes
     ----------
     scene : Scene
+        The scene whose motion is computed.
     tolerance : float
         Error of the trajectory to aim for.
 
@@ -58,6 +60,12 @@ class Propagator:
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion  # noqa: B018
+
+    def __repr__(self) -> str:
+        return f"<Propagator of {self.scene.name}: method {self._method}, tolerance {self.tolerance:g}>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the scene and the options: a copy prepares its motion from them and from the cache, on first use."""

@@ -62,7 +62,7 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """A propagator, as far as a trajectory needs it."""
+    """Interface of the propagator to which a trajectory refers: it returns motions from other initial states."""
 
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from an initial state."""
@@ -150,7 +150,7 @@ class Trajectory(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to its last sample time or to a terminal event."""
+        """Whether the motion was computed up to its last sample time or to a terminal event."""
         return self.status >= 0
 
     @property

@@ -65,7 +65,7 @@ class Place(NamedTuple):
 
 
 class _Scene(NamedTuple):
-    """The parts of a scene that a change looks at: its content, and the exact values that were read from it."""
+    """The content of a scene to be changed, and the exact values that were read from this content."""
 
     content: Content
     omega_b: Sequence[Fraction]
@@ -132,7 +132,7 @@ def _set(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _place(scene: _Scene, key: str) -> Place:
-    """Return the place that a key names; raise InputError if there is none, or if there are several."""
+    """Return the place in the scene's content that a key names; raise InputError if there is none or more than one."""
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")
     if key in SHORT:
@@ -171,7 +171,7 @@ def _path(key: str) -> Path:
 
 
 def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
-    """Yield the places of a torque's constant; without a prefix, the first torque that has it comes first."""
+    """Yield each place of a torque's constant; if the key has no torque number, in the order of the torques."""
     prefixed = _PREFIXED.fullmatch(key)
     candidates = [(int(prefixed[1]) - 1, prefixed[2])] if prefixed else [(k, key) for k in range(_count(scene))]
     for index, name in candidates:
@@ -250,7 +250,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the components of a vector of the scene, as they were written, or as they were read."""
+    """Return the components of a vector of a scene: from its content if listed there, otherwise as they were read."""
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")
@@ -265,7 +265,7 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
 
 
 def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
-    """Replace the body by one with other moments of inertia, but the same mass and centre of mass."""
+    """Replace the body by a body with one other moment of inertia, but the same mass and centre of mass."""
     if key == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
@@ -297,7 +297,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
 
 
 def _tensor(scene: _Scene) -> list[list[Any]]:
-    """Return the inertia tensor as it is written, after earlier changes, or as it follows from the shapes."""
+    """Return the rows of the inertia tensor: from the content, with earlier changes, or computed from the shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:
             return [[a, 0, 0], [0, b, 0], [0, 0, c]]

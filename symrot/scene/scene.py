@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import symrot
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
@@ -27,7 +28,7 @@ __all__ = ["Scene", "SceneSource", "load_scene", "shipped_scenes"]
 MOST_TORQUES = 100
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """A rigid body, its initial state, the torques on it, and the requested output. All numbers are exact.
 
@@ -72,6 +73,12 @@ class Scene:
     tolerance: Fraction
     table: Table | None = None  # a torque given by samples, in addition to the torques given by formulas
     origin: "_Origin | None" = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {self.title}, {float(self.span.start):g} to {float(self.span.stop):g} s>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
@@ -227,7 +234,7 @@ class Scene:
 
 
 class _Origin(NamedTuple):
-    """What a scene was read from, and the values that were read, by which a later replacement is noticed."""
+    """The content from which a scene was read, and the objects that were read, to notice if one is replaced later."""
 
     content: Content
     label: str
@@ -236,17 +243,17 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether the body and the torques of a scene are those that were read."""
+        """Return whether a scene still has the body and the torques that were read from its content."""
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the values that a content describes in many ways, such as a body by its shapes or by its moments."""
+    """Return the body and the torques of a scene, for each of which scene files have several notations."""
     return scene.body, scene.torques, scene.table
 
 
 def _values(scene: Scene) -> dict[str, Any]:
-    """Return the other values, each of which follows from one table of the content, by the key of that table."""
+    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file."""
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
         "output": scene.output, "accuracy": scene.tolerance,

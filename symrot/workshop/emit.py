@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import symrot
 from symrot.errors import InputError
 from symrot.planning.general_structure import switched
 from symrot.planning.plan import Plan, make_plan
@@ -56,6 +57,12 @@ class Emitted(_Texts):
         emitted = cls(text.name, source, header)
         emitted.text, emitted.bounds = text, bounds
         return emitted
+
+    def __repr__(self) -> str:
+        return f"<Emitted {self.name}: {self.source.count(chr(10))} lines>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def function(self) -> str:

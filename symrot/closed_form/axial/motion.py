@@ -147,6 +147,7 @@ def motion(
     inertia : 3 numbers
         Principal moments, kg m^2, positive.
     axis : 0, 1 or 2
+        Index of the principal axis about which the torque acts.
     torque : number
         Torque about the axis, N m, fixed in the body.
     omega0 : 3 numbers

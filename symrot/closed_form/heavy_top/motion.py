@@ -160,7 +160,7 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the axes of the scene are the same, so that no attitude has to be converted."""
+        """Whether these axes are those of the scene, so that no attitude has to be converted."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
