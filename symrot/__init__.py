@@ -58,6 +58,7 @@ _NAMES_OF_MODULES = {
     "report.output": ("save",),
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
+    "sweeps.sweep": ("Sweep", "sweep"),
     "viewer.show": ("in_notebook", "show"),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}

@@ -35,6 +35,7 @@ from symrot.report.output import save
 from symrot.report.plot import plot
 from symrot.results.saved import SavedTrajectory, load
 from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
+from symrot.sweeps.sweep import Sweep, sweep
 from symrot.viewer.show import in_notebook, show
 from symrot.workshop.certification import (
     Audit,
@@ -104,6 +105,7 @@ __all__ = [
     "Stats",
     "Step",
     "Structure",
+    "Sweep",
     "SymrotError",
     "Table",
     "Torque",
@@ -143,4 +145,5 @@ __all__ = [
     "show",
     "singularity_dossier",
     "solid",
+    "sweep",
 ]

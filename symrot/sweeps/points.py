@@ -11,6 +11,7 @@ Therefore any process can compute any part of the points, and the parts have the
 import warnings
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,7 @@ class _Sobol:
     """Sobol points of one sweep; a part that follows an earlier one costs only its own points."""
 
     def __init__(self, dimensions: int, seed: int) -> None:
-        self._dimensions, self._seed = dimensions, seed
+        self._dimensions, self._seed, self._lock = dimensions, seed, Lock()
         self._restart()
 
     def _restart(self) -> None:
@@ -97,6 +98,11 @@ class _Sobol:
         self._next = 0
 
     def points(self, start: int, stop: int) -> Floats:
+        """Return the points ``start`` to ``stop``; threads take turns, since the position is shared."""
+        with self._lock:
+            return self._points(start, stop)
+
+    def _points(self, start: int, stop: int) -> Floats:
         if start < self._next:
             self._restart()
         if start > self._next:

@@ -1,0 +1,162 @@
+"""Results of a sweep as a folder of Parquet files, which pandas opens: one file for each chunk of trajectories.
+
+If an output has values at all sample times, there is one row for each trajectory and time; otherwise one row for each
+trajectory. A file is renamed to its name when it is complete, so that a file that is there has all its rows.
+"""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.files.writing import write
+from symrot.sweeps.chunk import Chunk
+from symrot.sweeps.layout import (
+    COMPONENT,
+    MESSAGE,
+    STATUS,
+    TIME,
+    TRAJECTORY,
+    Header,
+    Table,
+    arrays_of,
+    difference,
+    messages_of,
+)
+
+__all__ = ["ParquetStore"]
+
+DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Parquet ignore names that begin with _
+
+
+def _arrow() -> Any:
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise InputError(
+            "-o: expected pyarrow, but it is not installed; install it with pip install 'symrot[sweep]'"
+        ) from None
+    return pyarrow
+
+
+class ParquetStore:
+    """The store of a sweep in the folder at ``path``; the folder of the same sweep is continued.
+
+    Raises
+    ------
+    InputError
+        If pyarrow is not installed, or if the path contains something else than results of the same sweep.
+    """
+
+    def __init__(self, path: Path, header: Header) -> None:
+        from dataclasses import replace
+
+        self._arrow, self.path = _arrow(), path
+        description = path / DESCRIPTION
+        if path.exists() and not (path.is_dir() and not any(path.iterdir())):
+            expectation = f"{path}: expected a new name or the results of this sweep"
+            try:
+                other = json.loads(description.read_text(encoding="utf-8"))
+                identity, rows = other["identity"], int(other["rows"])
+            except (OSError, LookupError, ValueError, TypeError):
+                raise InputError(f"{expectation}, got something else; choose another name") from None
+            if different := difference(header.identity, identity):
+                raise InputError(
+                    f"{expectation}, got those of a sweep with a different {different}; choose another name"
+                )
+            header = replace(header, rows=rows)
+        else:
+            path.mkdir(exist_ok=True)
+            text = json.dumps({"identity": dict(header.identity), "rows": header.rows}, indent=2)
+            write(description, lambda stream: stream.write(text.encode()))
+        self.header = header
+        self._long = any(TIME in variable.dimensions for variable in header.variables)
+
+    def _file(self, start: int) -> Path:
+        return self.path / f"part-{start:012d}.parquet"
+
+    def pending(self) -> list[tuple[int, int]]:
+        """Return the ranges of the chunks that are missing."""
+        return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
+
+    def write(self, chunk: Chunk) -> None:
+        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        n, times = chunk.stop - chunk.start, self.header.times
+        repeats = len(times) if self._long else 1
+        columns: dict[str, Any] = {TRAJECTORY: np.repeat(np.arange(chunk.start, chunk.stop), repeats)}
+        if self._long:
+            columns["t"] = np.tile(times, n)
+        arrays = arrays_of(chunk, self.header.inputs)
+        for variable in self.header.variables:
+            values = arrays[variable.name]
+            if variable.dimensions == (TIME,):
+                columns[variable.name] = values.ravel()
+            elif variable.dimensions:
+                parts = zip(_parts(variable.name), values.T, strict=True)
+                columns |= {name: np.repeat(part, repeats) for name, part in parts}
+            else:
+                columns[variable.name] = np.repeat(values, repeats)
+        columns[STATUS] = np.repeat(chunk.status, repeats)
+        columns[MESSAGE] = self._arrow.array(np.repeat(messages_of(chunk), repeats), type=self._arrow.string())
+        table = self._arrow.table(columns).replace_schema_metadata(self._metadata())
+        write(self._file(chunk.start), lambda stream: self._arrow.parquet.write_table(table, stream, compression="zstd"))
+
+    def _metadata(self) -> dict[str, str]:
+        """Return the labels of all columns; pandas shows them as ``attrs``."""
+        by_column = {
+            name: variable
+            for variable in self.header.variables
+            for name in ([variable.name] if variable.dimensions in ((), (TIME,)) else _parts(variable.name))
+        }
+        labels = {
+            "units": {"t": "s"} | {name: variable.unit for name, variable in by_column.items()},
+            "frames": {name: variable.frame for name, variable in by_column.items()},
+            "meanings": {name: variable.meaning for name, variable in by_column.items()},
+            "scene": self.header.scene,
+        }
+        return {"PANDAS_ATTRS": json.dumps(labels)}
+
+    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        parts = []
+        variable = next((each for each in self.header.variables if each.name == name), None)
+        for first in range(start // self.header.rows * self.header.rows, stop, self.header.rows):
+            column = self._arrow.parquet.read_table(self._file(first), columns=[name], partitioning=None)
+            values = column[name].to_numpy().reshape(-1, len(self.header.times) if self._long else 1)
+            whole = values if variable is not None and variable.dimensions == (TIME,) else values[:, 0]
+            parts.append(whole[max(0, start - first) : stop - first])
+        return np.concatenate(parts)
+
+    def finish(self, tables: list[Table], without_values: bool) -> None:
+        """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
+        if tables:
+            rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
+            write(self.path / STATISTICS, lambda stream: self._arrow.parquet.write_table(rows, stream))
+        if without_values:
+            raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
+
+    def dataset(self) -> Any:
+        """Return the results as a pandas DataFrame."""
+        import pandas
+
+        return pandas.read_parquet(os.fspath(self.path))
+
+
+def _parts(name: str) -> list[str]:
+    """Return the names of the columns of the components of a quaternion."""
+    return [f"{name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
+
+
+def _rows(table: Table, times: NDArray[np.float64]) -> list[dict[str, Any]]:
+    """Return an array of statistics as rows (name, t, index, value); index counts percentiles or bins."""
+    rows = []
+    for place, value in np.ndenumerate(table.values):
+        axes = dict(zip(table.dimensions, place, strict=True))
+        time = float(times[axes.pop(TIME)]) if TIME in axes else None
+        rows.append({"name": table.name, "t": time, "index": next(iter(axes.values()), None), "value": float(value)})
+    return rows
