@@ -26,8 +26,8 @@ LABELS = {
 }
 """Attributes of the arrays that every sweep has."""
 
-ROWS = (256, 16384)  # least and largest number of trajectories in a chunk
-CHUNKS = 64  # chunks of a small sweep, so that several processes share the work
+ROWS = (1024, 16384)  # least and largest number of trajectories in a chunk
+CHUNKS = 16  # chunks of a small sweep, so that several processes share the work
 LARGEST_CHUNK = 4_000_000  # samples in a chunk, about 300 MB with all quantities that are computed on the way
 
 

@@ -8,13 +8,16 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import lru_cache
 from multiprocessing.connection import wait as wait_for
-from threading import Thread, active_count
+from threading import Thread
+from types import ModuleType
 from typing import Any
 
 from symrot.errors import PropagationError
@@ -61,8 +64,7 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
         yield from (compute(job, *each) for each in ranges)
         return
     compute(job, ranges[0][0], ranges[0][0] + 1)  # compiles the kernel once, before the processes need it
-    can_fork = "fork" in multiprocessing.get_all_start_methods() and active_count() == 1
-    context = multiprocessing.get_context("fork" if can_fork else "spawn")
+    context = multiprocessing.get_context("spawn")  # after a fork, other threads of the parent would leave locks behind
     text, missing, losses = packed(job), deque(ranges), 0
     while missing:
         pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin)
@@ -71,7 +73,8 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
             while missing or running:
                 while missing and len(running) < IN_FLIGHT * workers:
                     each = missing.popleft()
-                    running[pool.submit(compute_packed, text, *each)] = each
+                    with _without_main():
+                        running[pool.submit(compute_packed, text, *each)] = each
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     chunk = future.result()
                     del running[future]
@@ -87,6 +90,21 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
                 ) from None
         finally:
             _stop(pool)
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Hide the program that called from new processes.
+
+    They would run it again from its first line, to which a program without ``if __name__ == "__main__"`` would object;
+    a chunk needs nothing of it.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 def _begin() -> None:
