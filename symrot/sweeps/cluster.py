@@ -61,7 +61,7 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
         def submit() -> Any:
             return client.submit(compute_packed, text, *missing.popleft(), pure=False, retries=RETRIES)
 
-        running = as_completed([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))])
+        running = as_completed([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
         for future in running:
             try:
                 chunk: Chunk = future.result()

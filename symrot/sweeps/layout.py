@@ -89,6 +89,12 @@ class Store(Protocol):
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Return the values of one array for the trajectories ``start`` to ``stop``."""
 
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there."""
+
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+
     def finish(self, tables: list[Table], without_values: bool) -> None:
         """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
 

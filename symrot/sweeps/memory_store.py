@@ -50,6 +50,14 @@ class MemoryStore:
         """Return the values of one array for the trajectories ``start`` to ``stop``."""
         return self._arrays[name][start:stop]
 
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+        return next((table.values for table in self.tables if table.name == name), None)
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there."""
+        return name in self._arrays
+
     def finish(self, tables: list[Table], without_values: bool) -> None:
         """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
         self.tables = tables

@@ -132,6 +132,22 @@ class ParquetStore:
             parts.append(whole[max(0, start - first) : stop - first])
         return np.concatenate(parts)
 
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+        path = self.path / STATISTICS
+        if not path.exists():
+            return None
+        rows = self._arrow.parquet.read_table(path, filters=[("name", "=", name)])
+        counts = [rows[key].to_numpy() for key in ("index", "t")]
+        if not len(rows):
+            return None
+        shape = [len(np.unique(column)) for column in counts if not np.isnan(column.astype(float)).all()]
+        return np.asarray(rows["value"].to_numpy().reshape(shape))
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there; the components of attitudes are columns of their own."""
+        return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
+
     def finish(self, tables: list[Table], without_values: bool) -> None:
         """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
         if tables:

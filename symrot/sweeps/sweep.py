@@ -15,6 +15,7 @@ from symrot.formula.exact_numbers import show
 from symrot.planning.plan import make_plan
 from symrot.propagation.method import choose_method
 from symrot.scene.file import SHIPPED, find_scene, read_toml
+from symrot.scene.reader import nearest
 from symrot.scene.scene import Scene, load_scene
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
@@ -73,6 +74,37 @@ class Sweep:
     impossible: int
     reasons: list[tuple[int, str]]
     _store: Any
+
+    def array(self, name: str) -> NDArray[Any]:
+        """Return one array of the results, which has all its values in memory.
+
+        Parameters
+        ----------
+        name : str
+            An output such as ``"omega_1@end"``, an input such as ``"input_weight"``, ``"status"``, ``"message"``, or a
+            statistic such as ``"energy_mean"``.
+
+        Returns
+        -------
+        array
+            Outputs at all times have the shape (trajectories, times), the others (trajectories,); statistics at all
+            times have the times as last axis.
+
+        Raises
+        ------
+        InputError
+            If there is no array with this name.
+        """
+        header = self._store.header
+        names = [STATUS, MESSAGE, *(variable.name for variable in header.variables)]
+        values: NDArray[Any] | None = self._store.table(name)
+        if values is None and name in names and self._store.has(name):
+            values = self._store.read(name, 0, header.count)
+        if values is None:
+            hint = nearest(name, names)
+            raise InputError(f"array: expected one of {', '.join(names)} or a statistic, got {show(name)}"
+                             + (f" ({hint})" if hint else ""))  # fmt: skip
+        return values
 
     def to_xarray(self) -> Any:
         """Return the results as an xarray Dataset with units; values in a Zarr file are read when they are used."""
@@ -180,7 +212,7 @@ def sweep(
     --------
     >>> import symrot
     >>> result = symrot.sweep("heavy_top_loops", {"body.mass": "linspace(0.4, 0.6, 3)"}, outputs="omega_3@end")
-    >>> result.to_xarray()["omega_3@end"].round(6).values.tolist()
+    >>> result.array("omega_3@end").round(6).tolist()
     [200.0, 200.0, 200.0]
     """
     chosen = read_statistics([statistics] if isinstance(statistics, str) else statistics)

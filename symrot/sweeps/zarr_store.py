@@ -131,6 +131,15 @@ class ZarrStore:
         values: NDArray[Any] = self._array(name)[start:stop]
         return values
 
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+        names = [STATUS, MESSAGE, *(variable.name for variable in self.header.variables)]
+        return None if name in names or name not in self._group else np.asarray(self._group[name][...])
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there."""
+        return name in self._group
+
     @property
     def finished(self) -> bool:
         """Whether statistics were written already."""
