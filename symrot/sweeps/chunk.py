@@ -104,9 +104,7 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
     return inputs, rows
 
 
-def _read_scenes(
-    job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]
-) -> Rows:
+def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
     """Write the constants of the scenes with the values at some paths into the inputs; return the rows with a scene."""
     assert job.content is not None
     constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})

@@ -42,7 +42,8 @@ def _client(address: str) -> Any:
 def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
     """Yield the chunks of a job in the order in which they are complete, computed by the workers of a Dask cluster.
 
-    Dask computes the chunks of a lost worker elsewhere. At most two chunks for each thread of the cluster are under way.
+    Dask computes the chunks of a lost worker elsewhere. At most two chunks for each thread of the cluster are under
+    way.
 
     Raises
     ------

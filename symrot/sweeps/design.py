@@ -181,7 +181,7 @@ def _whole(value: object, where: str, low: int, high: int) -> int:
         raise InputError(expectation)
     try:
         number = int(value) if not isinstance(value, str) or value.strip().isdigit() else int(float(value))
-        exact = isinstance(value, str) and value.strip().isdigit() or number == float(value)
+        exact = (isinstance(value, str) and value.strip().isdigit()) or number == float(value)
     except (ValueError, OverflowError):
         raise InputError(expectation) from None
     if not exact or not low <= number < high:

@@ -92,8 +92,8 @@ def read_law(law: object, where: str) -> Law:
     Parameters
     ----------
     law : str, or sequence of numbers
-        ``normal(mean, deviation)``, ``uniform(low, high)``, ``loguniform(low, high)``, ``linspace(first, last, count)``,
-        ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence.
+        ``normal(mean, deviation)``, ``uniform(low, high)``, ``loguniform(low, high)``, ``linspace(first, last,
+        count)``, ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence.
     where : str
         Name of the value that varies, for error messages.
 

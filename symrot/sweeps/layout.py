@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from symrot.sweeps.chunk import Chunk, Job
 
 __all__ = [
-    "COMPONENT", "LABELS", "MESSAGE", "NOT_COMPUTED", "STATUS", "TIME", "TRAJECTORY", "Header", "Store", "Table", "Variable",
-    "arrays_of", "difference", "header_of", "messages_of",
+    "COMPONENT", "LABELS", "MESSAGE", "NOT_COMPUTED", "STATUS", "TIME", "TRAJECTORY", "Header", "Store", "Table",
+    "Variable", "arrays_of", "difference", "header_of", "messages_of",
 ]  # fmt: skip
 
 TRAJECTORY, TIME = "trajectory", "time"
@@ -154,9 +154,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
     ``names`` are the names of the values that vary, in the order of the draws.
     """
-    arrays: dict[str, NDArray[Any]] = {
-        f"input_{name}": chunk.draws.values[:, k] for k, name in enumerate(names)
-    }
+    arrays: dict[str, NDArray[Any]] = {f"input_{name}": chunk.draws.values[:, k] for k, name in enumerate(names)}
     if chunk.draws.attitudes is not None:
         arrays[ATTITUDE] = chunk.draws.attitudes
     return arrays | chunk.outputs

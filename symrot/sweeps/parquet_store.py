@@ -104,7 +104,9 @@ class ParquetStore:
         columns[STATUS] = np.repeat(chunk.status, repeats)
         columns[MESSAGE] = self._arrow.array(np.repeat(messages_of(chunk), repeats), type=self._arrow.string())
         table = self._arrow.table(columns).replace_schema_metadata(self._metadata())
-        write(self._file(chunk.start), lambda stream: self._arrow.parquet.write_table(table, stream, compression="zstd"))
+        write(
+            self._file(chunk.start), lambda stream: self._arrow.parquet.write_table(table, stream, compression="zstd")
+        )
 
     def _metadata(self) -> dict[str, str]:
         """Return the labels of all columns; pandas shows them as ``attrs``."""

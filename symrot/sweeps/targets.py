@@ -69,7 +69,9 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
         paths = [] if content is None else [text for text in _numbers_in(content) if not _is_fixed(text)]
         hint = nearest(name, [*known, *paths])
         listed = ", ".join(known) + (", or a number in the scene file such as " + ", ".join(paths[:3]) if paths else "")
-        raise InputError(f"expected something that can vary, {listed}, got {show(name)}" + (f" ({hint})" if hint else ""))
+        raise InputError(
+            f"expected something that can vary, {listed}, got {show(name)}" + (f" ({hint})" if hint else "")
+        )
     _require_number(name, path, content)
     return Target(name, "", path)
 

@@ -100,9 +100,7 @@ class ZarrStore:
             _add(group, Table(TIME, (TIME,), header.times, {"units": "s", "long_name": "time"}))
             if any(COMPONENT[0] in variable.dimensions for variable in header.variables):
                 _add(group, Table(COMPONENT[0], (COMPONENT[0],), np.array(COMPONENT[1], dtype=object), {}))
-            group.attrs.update(
-                {"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))}
-            )
+            group.attrs.update({"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))})
             part.replace(self.path)
         finally:
             shutil.rmtree(part, ignore_errors=True)

@@ -14,11 +14,21 @@ BASE = ["sweep", "heavy_top_loops", "--vary", "omega_1 ~ normal(0, 0.1)", "--cou
 def test_the_command_writes_a_file_and_says_so(tmp_path, capsys):
     path = str(tmp_path / "a.zarr")
     assert main([*BASE, "-o", path, "--output", "omega_3@end", "--times", "linspace(0, 1, 3)"]) == 0
-    assert capsys.readouterr().out == f"{path}: 6 of 6 trajectories complete\n  open it with xarray.open_zarr({path!r})\n"
+    assert (
+        capsys.readouterr().out == f"{path}: 6 of 6 trajectories complete\n  open it with xarray.open_zarr({path!r})\n"
+    )
 
 
 def test_json_names_trajectories_without_a_motion(tmp_path, capsys):
-    command = ["sweep", "heavy_top_loops", "--vary", "body.mass = values(1, -1)", "-o", str(tmp_path / "a.zarr"), "--json"]
+    command = [
+        "sweep",
+        "heavy_top_loops",
+        "--vary",
+        "body.mass = values(1, -1)",
+        "-o",
+        str(tmp_path / "a.zarr"),
+        "--json",
+    ]
     assert main(command) == 0
     facts = json.loads(capsys.readouterr().out)
     assert (facts["complete"], facts["impossible"]) == (1, 1)

@@ -35,7 +35,9 @@ def test_a_longer_sweep_begins_with_the_shorter_one(sampling):
 
 @pytest.mark.parametrize(("start", "stop"), [(0, 1), (3, 9), (39, 40), (5, 5)])
 def test_draws_depend_on_the_index_alone(start, stop):
-    whole = design({"omega_1": "normal(0, 1)", "weight": "values(1, 2)"}, count=40, attitudes="uniform", sampling="latin")
+    whole = design(
+        {"omega_1": "normal(0, 1)", "weight": "values(1, 2)"}, count=40, attitudes="uniform", sampling="latin"
+    )
     part = whole.draws(start, stop)
     assert np.array_equal(part.values, whole.draws(0, 40).values[start:stop])
     assert np.array_equal(part.attitudes, whole.draws(0, 40).attitudes[start:stop])

@@ -196,7 +196,10 @@ def test_workers_end_with_a_killed_client(tmp_path):
         process.kill()
     assert len(children) == 2
     for _ in range(500):
-        if not any(Path(f"/proc/{child}/cmdline").exists() and Path(f"/proc/{child}/cmdline").read_bytes() for child in children):
+        if not any(
+            Path(f"/proc/{child}/cmdline").exists() and Path(f"/proc/{child}/cmdline").read_bytes()
+            for child in children
+        ):
             break
         time.sleep(0.02)
     else:
