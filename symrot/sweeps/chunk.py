@@ -143,7 +143,7 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
         try:
             scene = Scene.from_dict(changed, "scene", table_folders=job.table_folders)
             variation = read_variation(scene, None, None, None)
-            numbers = [float(variation.constant(name)) for name in constants]  # type: ignore[arg-type]
+            numbers = [float(variation.constant(name)) for name in constants]
         except InputError as error:
             return str(error)
         start = scene.initial

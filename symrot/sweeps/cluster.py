@@ -6,6 +6,7 @@ from typing import Any
 
 from symrot.errors import InputError, PropagationError
 from symrot.sweeps.chunk import Chunk, Job
+from symrot.sweeps.optional import optional
 from symrot.sweeps.processes import IN_FLIGHT, Range, compute_packed, packed
 
 __all__ = ["run_on_cluster"]
@@ -15,15 +16,9 @@ RETRIES = 3
 
 
 def _client(address: str) -> Any:
+    make = optional("distributed", "--scheduler", "cluster").Client
     try:
-        from distributed import Client
-    except ImportError:
-        raise InputError(
-            "--scheduler: expected dask and distributed, but they are not installed; install them with "
-            "pip install 'symrot[cluster]'"
-        ) from None
-    try:
-        client = Client(address, timeout=SECONDS, set_as_default=False)
+        client = make(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as reason:
         raise InputError(
             f"--scheduler: expected the address of a Dask scheduler that answers within {SECONDS} s, such as "
@@ -52,9 +47,8 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
     PropagationError
         If the cluster fails to compute a chunk.
     """
-    from distributed import as_completed
-
     client = _client(address)
+    in_order = optional("distributed", "--scheduler", "cluster").as_completed
     try:
         text, missing = packed(job), deque(ranges)
         threads = sum(client.nthreads().values()) or 1
@@ -62,7 +56,7 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
         def submit() -> Any:
             return client.submit(compute_packed, text, *missing.popleft(), pure=False, retries=RETRIES)
 
-        running = as_completed([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
+        running = in_order([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
         for future in running:
             try:
                 chunk: Chunk = future.result()

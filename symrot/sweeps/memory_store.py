@@ -19,6 +19,7 @@ from symrot.sweeps.layout import (
     arrays_of,
     messages_of,
 )
+from symrot.sweeps.optional import optional
 
 __all__ = ["MemoryStore"]
 
@@ -67,8 +68,7 @@ class MemoryStore:
 
     def dataset(self) -> Any:
         """Return the results as an xarray Dataset."""
-        import xarray
-
+        xarray = optional("xarray", "to_xarray", "frames")
         labels = {variable.name: variable for variable in self.header.variables}
         variables = {
             name: ((TRAJECTORY, *labels[name].dimensions), values, labels[name].attributes)

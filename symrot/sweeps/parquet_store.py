@@ -27,21 +27,11 @@ from symrot.sweeps.layout import (
     difference,
     messages_of,
 )
+from symrot.sweeps.optional import optional
 
 __all__ = ["ParquetStore"]
 
 DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Parquet ignore names that begin with _
-
-
-def _arrow() -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise InputError(
-            "-o: expected pyarrow, but it is not installed; install it with pip install 'symrot[sweep]'"
-        ) from None
-    return pyarrow
 
 
 class ParquetStore:
@@ -56,7 +46,8 @@ class ParquetStore:
     def __init__(self, path: Path, header: Header) -> None:
         from dataclasses import replace
 
-        self._arrow, self.path = _arrow(), path
+        self._parquet, self._arrow = optional("pyarrow.parquet", "-o"), optional("pyarrow", "-o")
+        self.path = path
         description = path / DESCRIPTION
         if path.exists() and not (path.is_dir() and not any(path.iterdir())):
             expectation = f"{path}: expected a new name or the results of this sweep"
@@ -104,9 +95,8 @@ class ParquetStore:
         columns[STATUS] = np.repeat(chunk.status, repeats)
         columns[MESSAGE] = self._arrow.array(np.repeat(messages_of(chunk), repeats), type=self._arrow.string())
         table = self._arrow.table(columns).replace_schema_metadata(self._metadata())
-        write(
-            self._file(chunk.start), lambda stream: self._arrow.parquet.write_table(table, stream, compression="zstd")
-        )
+        writer = self._parquet.write_table
+        write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
 
     def _metadata(self) -> dict[str, str]:
         """Return the labels of all columns; pandas shows them as ``attrs``."""
@@ -128,7 +118,7 @@ class ParquetStore:
         parts = []
         variable = next((each for each in self.header.variables if each.name == name), None)
         for first in range(start // self.header.rows * self.header.rows, stop, self.header.rows):
-            column = self._arrow.parquet.read_table(self._file(first), columns=[name], partitioning=None)
+            column = self._parquet.read_table(self._file(first), columns=[name], partitioning=None)
             values = column[name].to_numpy().reshape(-1, len(self.header.times) if self._long else 1)
             whole = values if variable is not None and variable.dimensions == (TIME,) else values[:, 0]
             parts.append(whole[max(0, start - first) : stop - first])
@@ -139,7 +129,7 @@ class ParquetStore:
         path = self.path / STATISTICS
         if not path.exists():
             return None
-        rows = self._arrow.parquet.read_table(path, filters=[("name", "=", name)])
+        rows = self._parquet.read_table(path, filters=[("name", "=", name)])
         counts = [rows[key].to_numpy() for key in ("index", "t")]
         if not len(rows):
             return None
@@ -154,14 +144,13 @@ class ParquetStore:
         """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
-            write(self.path / STATISTICS, lambda stream: self._arrow.parquet.write_table(rows, stream))
+            write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
         if without_values:
             raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
 
     def dataset(self) -> Any:
         """Return the results as a pandas DataFrame."""
-        import pandas
-
+        pandas = optional("pandas", "to_dataframe")
         return pandas.read_parquet(os.fspath(self.path))
 
 

@@ -30,7 +30,8 @@ BLOCK = 4  # words of 64 bits that Philox computes from one value of its counter
 
 def _key(seed: int, stream: str, words: int = 2) -> Words:
     """Return the key of the random numbers with a name."""
-    return np.random.SeedSequence(seed, spawn_key=tuple(stream.encode())).generate_state(words, np.uint64)
+    sequence = np.random.SeedSequence(seed, spawn_key=tuple(stream.encode()))
+    return sequence.generate_state(words, np.uint64).astype(np.uint64)
 
 
 def _words(seed: int, stream: str, start: int, stop: int) -> Words:

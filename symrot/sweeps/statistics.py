@@ -218,7 +218,10 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 
 @dataclass
 class _Search:
-    """An interval of keys of one column, with the ranks to look for: by rank among its values, the ranks of the column."""
+    """An interval of keys of one column, with the ranks to look for.
+
+    ``ranks`` holds, for each rank among the values in the interval, the ranks in the column.
+    """
 
     column: int
     first: int

@@ -68,10 +68,11 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
     if not path or content is None:
         paths = [] if content is None else [text for text in _numbers_in(content) if not _is_fixed(text)]
         hint = nearest(name, [*known, *paths])
-        listed = ", ".join(known) + (", or a number in the scene file such as " + ", ".join(paths[:3]) if paths else "")
-        raise InputError(
-            f"expected something that can vary, {listed}, got {show(name)}" + (f" ({hint})" if hint else "")
-        )
+        listed = ", ".join(known)
+        if paths:
+            listed += f", or a number in the scene file such as {', '.join(paths[:3])}"
+        reason = f" ({hint})" if hint else ""
+        raise InputError(f"expected something that can vary, {listed}, got {show(name)}{reason}")
     _require_number(name, path, content)
     return Target(name, "", path)
 
@@ -108,12 +109,11 @@ def _unit_of_constant(scene: Scene, name: str) -> str:
 def _require_number(name: str, path: Path, content: Content) -> None:
     value: Any = content
     for token in path:
-        if isinstance(token, str) and isinstance(value, Mapping) and token in value:
-            value = value[token]
-        elif isinstance(token, int) and isinstance(value, list | tuple) and token < len(value):
-            value = value[token]
-        else:
+        is_key = isinstance(token, str) and isinstance(value, Mapping) and token in value
+        is_place = isinstance(token, int) and isinstance(value, list | tuple) and token < len(value)
+        if not (is_key or is_place):
             _refuse(name, content)
+        value = value[token]
     if path[0] == "torque":
         if content["torque"][path[1]].get("kind") == TABLE_KIND.kind:
             raise InputError(f"{name}: expected a torque given by formulas, got a torque of kind {TABLE_KIND.kind}")

@@ -30,20 +30,11 @@ from symrot.sweeps.layout import (
     difference,
     messages_of,
 )
+from symrot.sweeps.optional import optional
 
 __all__ = ["ZarrStore"]
 
 IDENTITY, ROWS, FINISHED = "symrot_sweep", "symrot_rows", "symrot_finished"
-
-
-def _zarr() -> Any:
-    try:
-        import zarr
-    except ImportError:
-        raise InputError(
-            "-o: expected zarr, but it is not installed; install it with pip install 'symrot[sweep]'"
-        ) from None
-    return zarr
 
 
 class ZarrStore:
@@ -56,7 +47,7 @@ class ZarrStore:
     """
 
     def __init__(self, path: Path, header: Header) -> None:
-        zarr = _zarr()
+        zarr = optional("zarr", "-o")
         self.path = path
         if path.exists():
             header = self._continued(zarr, header)
@@ -153,15 +144,14 @@ class ZarrStore:
             for variable in self.header.variables:
                 if variable.name in self._group:
                     del self._group[variable.name]
-        zarr = _zarr()
+        zarr = optional("zarr", "-o")
         with warnings.catch_warnings():  # zarr calls the consolidated form of version 3 experimental; xarray reads it
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(str(self.path))
 
     def dataset(self) -> Any:
         """Return the results as an xarray Dataset, which reads its values when they are used."""
-        import xarray
-
+        xarray = optional("xarray", "to_xarray")
         return xarray.open_zarr(str(self.path), consolidated=None if self.finished else False)
 
 
