@@ -75,6 +75,12 @@ class Variation:
     def __len__(self) -> int:
         return len(self.omega)
 
+    def of(self, rows: NDArray[np.intp]) -> "Variation":
+        """Return the variation of some of the trajectories."""
+        quaternion = None if self.quaternion is None else self.quaternion[rows]
+        columns = {name: column[rows] for name, column in self.columns.items()}
+        return replace(self, omega=self.omega[rows], quaternion=quaternion, columns=columns)
+
     def scene_of(self, i: int) -> Scene:
         """Return the scene of trajectory i; values from the arrays of the variation become exact fractions."""
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
