@@ -100,6 +100,10 @@ def _sweep(options: Namespace) -> int:
             f"symrot: interrupted; complete chunks are in {options.out}, run the same command again to go on\n"
         )
         return INTERRUPTED
+    except OSError as reason:  # such as a full disk
+        raise InputError(
+            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to go on"
+        ) from None
     progress("")
     facts = {
         "written": str(result.path),
