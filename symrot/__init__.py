@@ -32,7 +32,11 @@ _NAMES_OF_MODULES = {
     "exercises.sheet": ("ExerciseSheet", "exercise"),
     "exercises.grading.mark": ("Grades", "Mark"),
     "exercises.grading.grade": ("grade",),
-    "scene.scene": ("Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene", "shipped_scenes"),
+    "scene.body": ("Body",),
+    "scene.torque": ("Torque",),
+    "scene.samples": ("Table",),
+    "scene.tables": ("Initial", "Output", "Span"),
+    "scene.scene": ("Scene", "load_scene", "shipped_scenes"),
     "planning.plan": ("Plan",),
     "planning.rules": ("RuleOutcome",),
     "planning.scene_kernel": ("SceneKernel",),
@@ -48,6 +52,7 @@ _NAMES_OF_MODULES = {
         "certify",
         "largest_box",
     ),
+    "workshop.sympy_mechanics": ("from_sympy", "to_sympy"),
     "workshop.emit": ("Emitted", "emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
     "propagation.method": ("METHODS",),
@@ -59,7 +64,8 @@ _NAMES_OF_MODULES = {
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
     "sweeps.sweep": ("Sweep", "sweep"),
-    "viewer.show": ("in_notebook", "show"),
+    "viewer.show": ("show",),
+    "notebook.show": ("in_notebook",),
 }
 _MODULE = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
 _RENAMED = {"dcm_of": "quaternion_to_dcm", "qmul": "quaternion_product"}

@@ -20,6 +20,7 @@ from symrot.kinematics.chart import Limit, RateMatrix, SingularSet
 from symrot.kinematics.dossier import LockedPoint, SingularityDossier, singularity_dossier
 from symrot.kinematics.euler import EulerRateMatrix, dcm, rate_jacobian
 from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, quaternion_to_dcm
+from symrot.notebook.show import in_notebook
 from symrot.planning.plan import Plan
 from symrot.planning.rules import RuleOutcome
 from symrot.planning.scene_kernel import SceneKernel
@@ -34,9 +35,13 @@ from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.report.output import save
 from symrot.report.plot import plot
 from symrot.results.saved import SavedTrajectory, load
-from symrot.scene.scene import Body, Initial, Output, Scene, Span, Table, Torque, load_scene, shipped_scenes
+from symrot.scene.body import Body
+from symrot.scene.samples import Table
+from symrot.scene.scene import Scene, load_scene, shipped_scenes
+from symrot.scene.tables import Initial, Output, Span
+from symrot.scene.torque import Torque
 from symrot.sweeps.sweep import Sweep, sweep
-from symrot.viewer.show import in_notebook, show
+from symrot.viewer.show import show
 from symrot.workshop.certification import (
     Audit,
     Certificate,
@@ -49,6 +54,7 @@ from symrot.workshop.certification import (
     largest_box,
 )
 from symrot.workshop.emit import Emitted, emit, explain, kernel_names, plan
+from symrot.workshop.sympy_mechanics import from_sympy, to_sympy
 
 __version__: str
 
@@ -123,6 +129,7 @@ __all__ = [
     "euler_equations",
     "exercise",
     "explain",
+    "from_sympy",
     "grade",
     "identify",
     "in_notebook",
@@ -146,4 +153,5 @@ __all__ = [
     "singularity_dossier",
     "solid",
     "sweep",
+    "to_sympy",
 ]

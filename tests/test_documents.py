@@ -16,7 +16,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
 from symrot.inertia.shapes import SHAPES
 from symrot.kernels.library import kernel_names
 from symrot.propagation.method import METHODS
-from symrot.scene.scene import QUANTITIES
+from symrot.scene.tables import QUANTITIES
 from tests.code_blocks import Block, agree, blocks, run_block
 from tests.needs import needs_compiler
 from tests.test_package import ORDER

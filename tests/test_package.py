@@ -36,6 +36,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"figures"},
     {"report"},
     {"workshop"},
+    {"notebook"},
     {"bench"},
     {"cli", "__main__"},
 )

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
+from symrot.scene.settings import SET_HELP, settings
 
 __all__ = ["MODES", "STUDIES", "Mode", "ModeReport", "arguments", "run"]
 
@@ -44,7 +45,10 @@ def _study(options: Namespace, say: Progress) -> ModeReport:
     from symrot.scene.scene import load_scene
 
     _targets(options)
-    results = study(load_scene(options.scene), options.methods, options.quick, say, options.tolerances, options.rounds)
+    scene = load_scene(options.scene)
+    if options.settings:
+        scene = scene.with_(settings(options.settings))
+    results = study(scene, options.methods, options.quick, say, options.tolerances, options.rounds)
     if options.plot:
         from symrot.report.work_precision_plot import save
 
@@ -129,7 +133,7 @@ def _list(options: Namespace, say: Progress) -> ModeReport:
 
 
 SWEEP = frozenset({"methods", "tolerances", "rounds", "quick"})
-SCENE_STUDY = SWEEP | {"scene", "plot", "out", "json"}
+SCENE_STUDY = SWEEP | {"scene", "settings", "plot", "out", "json"}
 MODES: tuple[Mode, ...] = (
     Mode("", "study time against error for every method, on one scene", SCENE_STUDY, _study),
     Mode(
@@ -147,13 +151,14 @@ MODES: tuple[Mode, ...] = (
 )  # fmt: skip
 """All modes of ``symrot bench``."""
 
-OPTION_TEXTS = {"scene": "SCENE", "directory": "-o"}  # names of options in messages, if not --NAME
+OPTION_TEXTS = {"scene": "SCENE", "settings": "--set", "directory": "-o"}  # names of options in messages, if not --NAME
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Declare the arguments of ``symrot bench``."""
     add = parser.add_argument
     add("scene", metavar="SCENE", nargs="?", help="a shipped scene (see `symrot scenes`), or a file")
+    add("--set", metavar="KEY=VALUE", action="append", dest="settings", help=SET_HELP)
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
@@ -199,7 +204,7 @@ def run(options: Namespace, say: Progress) -> ModeReport:
     if len(asked) > 1 or (not asked and options.scene is None):
         raise InputError(f"bench: expected a SCENE or exactly one of {names} (see `symrot bench --help`)")
     mode = asked[0] if asked else MODES[0]
-    for name in ("scene", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
+    for name in ("scene", "settings", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
         if getattr(options, name) not in (None, False) and name not in mode.takes:
             option = OPTION_TEXTS.get(name, f"--{name}")
             raise InputError(f"bench: {mode.option or 'a SCENE'} does not accept {option} (see `symrot bench --help`)")

@@ -359,7 +359,7 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return symrot's number of operations and the smallest number of the other tools."""
+    """Return the number of operations of symrot's kernel, and the smallest number among the other tools."""
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 

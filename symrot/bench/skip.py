@@ -27,7 +27,8 @@ from symrot.propagation.method import Choice
 from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator
 from symrot.scene.file import read_toml
-from symrot.scene.scene import Scene, Torque, load_scene
+from symrot.scene.scene import Scene, load_scene
+from symrot.scene.torque import Torque
 
 __all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
 

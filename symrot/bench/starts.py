@@ -167,8 +167,8 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
-    def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
-        """Return the microseconds of a call, of the motion itself, and of the rest of the call."""
+    def whole(start: dict[str, Any]) -> tuple[float, float, float]:
+        """Return three times in microseconds: of a call, of the motion in it, and of the rest of the call."""
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
         own.follow(times, True)
@@ -177,7 +177,8 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return call, following + constants, more - constants
 
     assert parts is not None
-    starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
+    both: dict[str, Any] = {"omega": omega, "quaternion": quaternion}
+    starts = ({"omega": omega}, {"quaternion": quaternion}, both)
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
@@ -220,9 +221,9 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis.
+    """Return the microseconds that C takes for the constants of a body driven about its symmetry axis.
 
-    The table of polynomials counts only if the samples need it.
+    Time for the table of Taylor polynomials is included only if samples near resonance need this table.
     """
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)

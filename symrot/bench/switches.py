@@ -81,7 +81,10 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return the largest error at samples and between them in units of the tolerance, statistics, and least seconds."""
+    """Return error, statistics and least seconds of a method on a test problem.
+
+    The error is the largest one at the samples and midway between them, relative to the largest value, in tolerances.
+    """
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)
     least, motion = math.inf, made(times)

@@ -127,7 +127,7 @@ def scene(name: str) -> Scene:
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the exact last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed here."""
+    """Return the exact last state of a motion, from :data:`REFERENCES` if ``scale`` is 1, otherwise computed now."""
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
         np.array([float(value) for value in stored])

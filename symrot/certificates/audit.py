@@ -125,7 +125,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check header, C text and statements of a certificate against what symrot derives; return a sentence per check."""
+    """Check header, C text and statements of a certificate against symrot's own derivation.
+
+    Return one sentence for each check.
+    """
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -149,7 +152,10 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
 
 
 def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
-    """Check that the JavaScript of a kernel performs the operations of its C text; return a sentence if it is there."""
+    """Check that the JavaScript of a kernel performs the operations of its C text.
+
+    Return a list with one sentence, or an empty list if there is no JavaScript file.
+    """
     files = [file for file in data["files"] if file.endswith(".js") and (path.parent / file).is_file()]
     for file in files:
         compare_javascript((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
@@ -157,7 +163,7 @@ def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _compared(data: Data) -> list[str]:
-    """Return the sentence that verdicts on object code were not checked, or no sentence if there are no such verdicts.
+    """Return a list with a sentence that verdicts on object code were not checked; empty if there are no such verdicts.
 
     A verdict on object code holds only for the machine where it was made.
     """

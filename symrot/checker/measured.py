@@ -19,6 +19,9 @@ from symrot.errors import InputError
 __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
+DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+", r"[1-9]\d*[1-9]"
+"""Decimal numbers, and whole numbers that may be rounded: 37, but not 40, whose count of digits is unclear."""
+
 TURN = 7
 """An angle of at least this number, without pi, is probably in degrees: a full turn is 6.28 rad."""
 
@@ -88,15 +91,26 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
         other_digits, _ = _decimal(other, measured.text)
+        is_decimal = bool(digits)
+        if not is_decimal:
+            digits, unit = _decimal(side, measured.text, ROUNDED_WHOLE)
         if not digits or not all(n.value == "pi" or n.value in factors for _, n in walk(other) if n.kind == "name"):
             continue
         if other_digits and len(other_digits) > len(digits):
             continue
         value = product([_in_si(other, factors), Node("inv", None, (factors[unit],))])
+        if not is_decimal and not _is_irrational(claim, value):
+            continue
         worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
         verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))
     words = [verdict.verdict if verdict else "undecided" for verdict in verdicts]
     return next((verdicts[words.index(word)] for word in ("true", "undecided", "false") if word in words), None)
+
+
+def _is_irrational(claim: Claim, value: Node) -> bool:
+    """Return whether a number is irrational: then a whole number can equal it only by rounding."""
+    number_of_unit = claim.interpreter().read(value)
+    return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
@@ -126,7 +140,7 @@ def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool
     return (Repair((source[:start] + right + source[end:]).strip(), "digits", 1.0),)
 
 
-def _decimal(tree: Node, source: str, pattern: str = r"\d+\.\d+") -> tuple[str, str]:
+def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
     """Return the digits, of a pattern, and the unit of a number with a unit; empty texts for any other tree."""
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""

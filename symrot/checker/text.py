@@ -352,15 +352,16 @@ def _on_parts(
     for number, line in enumerate(lines):
         own = [next(remaining) for _ in line]
         own = own if units else _as_named_chain(line, own, notation)
-        later = {name for other in lines[number + 1 :] for claim in other for name, _ in claim.define}
+        others = [*lines[:number], *lines[number + 1 :]]
+        elsewhere = {name for other in others for claim in other for name, _ in claim.define}
         named = named_formula(line[0])
-        defines = named is not None and named.name in later
+        defines = named is not None and named.name in elsewhere
         for claim, verdict in zip(line, own, strict=True):
             assert claim.relation is not None
             words = (
                 OUTCOMES[verdict.verdict]
                 if not (defines and verdict.verdict == "definition")
-                else "a definition for the lines after it"
+                else "a definition for the other lines"
             )
             formulas = f": the {verdict.recognised_as[0]}" if verdict.recognised_as else ""
             notes.append(f"{notation.relation(claim.relation)} is {words}{formulas}")

@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import symrot
 from symrot.checker.marks import html_with_marks, latex_with_marks
 from symrot.exact.evidence import Counterexample
 
@@ -112,7 +113,7 @@ class Dimensions:
     units: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Identification:
     """A known formula to which a formula has been proven equal.
 
@@ -148,15 +149,21 @@ class Identification:
         pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
         return f"with {pairs}" if pairs else ""
 
+    def __repr__(self) -> str:
+        return f"<Identification: {self}>"
+
     def __str__(self) -> str:
         return "; ".join(part for part in (self.name, self.how, self.renaming) if part)
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     def to_json(self) -> dict[str, Any]:
         """Return the identification as JSON data."""
         return asdict(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """The verdict on a claim.
 
@@ -228,6 +235,12 @@ class Verdict:
 
     def __str__(self) -> str:
         return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])
+
+    def __repr__(self) -> str:
+        return f"<Verdict {self.verdict}: {self.text}>" if self.text else f"<Verdict {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     def facts(self) -> list[tuple[str, str]]:
         """Return everything else that the verdict says, for printing, as pairs (name, text)."""

@@ -15,6 +15,7 @@ from typing import Any, NoReturn, TextIO
 import symrot
 from symrot.cli import certify as cli_certify
 from symrot.cli import exercises as cli_exercises
+from symrot.cli import scenes as cli_scenes
 from symrot.cli import sweeps as cli_sweeps
 from symrot.cli.output import (
     FAILED,
@@ -88,7 +89,7 @@ def _run(options: Namespace) -> int:
         check_target(options.plot, (*plot.SUFFIXES, *PAGE_SUFFIXES), "--plot")
         if options.plot.suffix.lower() not in PAGE_SUFFIXES:
             plot.require_matplotlib()
-    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    scene = cli_scenes.load(options)
     progress("preparing the kernel (a compiler has at most 300 s) ..")
     start = perf_counter()
     propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
@@ -119,7 +120,7 @@ def _run(options: Namespace) -> int:
 
 
 def _show(options: Namespace) -> int:
-    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    scene = cli_scenes.load(options)
     progress("computing the motion ..")
     path = symrot.show(scene, options.output, lambda done, total: progress(f"drawing frame {done} of {total} .."))
     progress("")
@@ -176,7 +177,7 @@ def _write_partial(error: BaseException, propagator: Any, options: Namespace) ->
 def _explain(options: Namespace) -> int:
     from symrot.report import explain
 
-    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    scene = cli_scenes.load(options)
     progress("counting operations ..")
     report = explain.facts(symrot.plan(scene))
     progress("")
@@ -241,7 +242,9 @@ def _derive(options: Namespace) -> int:
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
-            raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
+            raise InputError(
+                f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, but it is missing"
+            )
         different = derivation_pages.check(directory, progress)
         progress("")
         sys.stdout.write("".join(diff for _, diff in different))
@@ -359,19 +362,8 @@ def _doctor(options: Namespace) -> int:
 # --- the arguments of each command ------------------------------------------------------------------------------------
 
 
-def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file", **more)
-
-
-def _table_folder_option(parser: ArgumentParser) -> None:
-    parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
-                        help="allow files of samples in this folder too; may be repeated "
-                        "(default: only the scene's own folder)")  # fmt: skip
-
-
 def _run_arguments(parser: ArgumentParser) -> None:
-    _scene_argument(parser)
-    _table_folder_option(parser)
+    cli_scenes.scene_options(parser)
     parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument(
@@ -387,16 +379,14 @@ def _run_arguments(parser: ArgumentParser) -> None:
 
 
 def _show_arguments(parser: ArgumentParser) -> None:
-    _scene_argument(parser)
-    _table_folder_option(parser)
+    cli_scenes.scene_options(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="FILE.html, or a film: FILE.gif, FILE.mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 
 
 def _explain_arguments(parser: ArgumentParser) -> None:
-    _scene_argument(parser)
-    _table_folder_option(parser)
+    cli_scenes.scene_options(parser)
     json_option(parser)
 
 

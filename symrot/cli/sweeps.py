@@ -10,6 +10,7 @@ from typing import Any
 
 import symrot
 from symrot.cli.output import INTERRUPTED, OK, Command, json_option, progress, say, say_json
+from symrot.cli.scenes import load, scene_options
 from symrot.errors import InputError
 
 __all__ = ["COMMANDS"]
@@ -83,14 +84,13 @@ def _bar() -> Iterator[Callable[[int, int], None]]:
 def _sweep(options: Namespace) -> int:
     if options.out is None:
         raise InputError("sweep: expected the file to write, -o FILE.zarr or -o FILE.parquet")
-    vary, times = _vary(options.vary), _times(options.times)
-    tolerance = options.tolerance
+    vary, times, scene = _vary(options.vary), _times(options.times), load(options)
     try:
         with _bar() as show:
             result = symrot.sweep(
-                options.scene, vary, attitudes=options.attitudes, sampling=options.sampling, count=options.count,
+                scene, vary, attitudes=options.attitudes, sampling=options.sampling, count=options.count,
                 seed=options.seed, outputs=options.output or ["omega@end"], t=times, statistics=options.statistics,
-                keep=options.keep, path=options.out, method=options.method, tolerance=tolerance,
+                keep=options.keep, path=options.out, method=options.method, tolerance=options.tolerance,
                 workers=options.workers, scheduler=options.scheduler, chunk=options.chunk,
                 table_folders=options.table_folder, progress=show, note=progress,
             )  # fmt: skip
@@ -102,7 +102,8 @@ def _sweep(options: Namespace) -> int:
         return INTERRUPTED
     except OSError as reason:  # such as a full disk
         raise InputError(
-            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to go on"
+            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to "
+            "go on"
         ) from None
     progress("")
     facts = {
@@ -126,7 +127,7 @@ def _sweep(options: Namespace) -> int:
 
 
 def _arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file")
+    scene_options(parser)
     parser.add_argument("--vary", metavar="'NAME ~ LAW'", action="append", default=[],
                         help="'omega_1 ~ normal(0, 0.1)', also uniform and loguniform; or a grid, 'weight = "
                         "linspace(1, 2, 50)', also geomspace and values; NAME may be a number in the scene file, "
@@ -150,8 +151,6 @@ def _arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (default: one per core)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead, tcp://host:8786")
     parser.add_argument("--chunk", type=int, metavar="N", help="trajectories in a chunk; does not change the results")
-    parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
-                        help="allow files of samples in this folder too; may be repeated")  # fmt: skip
     json_option(parser)
 
 

@@ -92,7 +92,7 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: that of its constants, if there is one, and that of its loops.
+    """Return the loaded libraries of a closed form: that of the constants, if it has one, then that of the loops.
 
     Raises
     ------

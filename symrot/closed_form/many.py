@@ -60,6 +60,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     Parameters
     ----------
     batch : Batch
+        The motions to evaluate.
     times : array, shape (m,) or (n, m)
         Times from the start, s.
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None

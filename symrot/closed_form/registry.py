@@ -10,7 +10,8 @@ from symrot.build import cache as library
 from symrot.closed_form.build import Floats
 from symrot.formula.exact_numbers import equal
 from symrot.planning.rules import ATTITUDE_QUANTITIES
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 

@@ -18,7 +18,7 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return the Python function of a program, imported from the NumPy module that symrot emits for the program."""
+    """Return the Python function of a program: its NumPy text is written to a file and imported as a module."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

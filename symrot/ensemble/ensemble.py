@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from operator import index
-from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 from warnings import catch_warnings, simplefilter
@@ -11,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import symrot
 from symrot.ensemble.motions import Followed, Problem, follow
 from symrot.ensemble.quantities import Source
 from symrot.ensemble.variation import read_times, read_variation
@@ -20,7 +20,8 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.results.samples import MotionSamples
-from symrot.scene.scene import QUANTITIES, TOLERANCES, Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import QUANTITIES, TOLERANCES
 
 __all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble", "read_tolerance"]
 
@@ -162,6 +163,9 @@ class Ensemble(MotionSamples):
         count = self.t.shape[-1]
         return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {count} samples, {self.method}{ending}>"
 
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
+
     @property
     def scene(self) -> Scene:
         """The scene, whose initial state and constants the motions vary."""
@@ -279,10 +283,11 @@ class Ensemble(MotionSamples):
 
 
 def propagate_ensemble(
-    scene: Scene | Propagator | str | Path,
+    scene: SceneSource | Propagator,
     *,
     omega: ArrayLike | None = None,
     quaternion: ArrayLike | None = None,
+    attitude: Any = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     t: ArrayLike | None = None,
     method: str = "auto",
@@ -300,12 +305,15 @@ def propagate_ensemble(
 
     Parameters
     ----------
-    scene : Scene, Propagator, str or Path
-        A scene, the name of a shipped scene, the path of a scene file, or a propagator, whose tolerance is then used.
+    scene : Scene, Propagator, mapping, str or Path
+        A scene, the content of a scene file as a dict, the name of a shipped scene, the path of a scene file, or a
+        propagator, whose tolerance is then used.
     omega : array, shape (n, 3), optional
         Initial angular velocities, body components, rad/s; default: the angular velocity in the scene for all motions.
     quaternion : array, shape (n, 4), optional
         Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions.
+    attitude : optional
+        Initial attitudes as n rotations of SciPy, or as an array of n matrices ``dcm_sb``, instead of ``quaternion``.
     parameters : dict of arrays, optional
         Values of constants of the scene, in SI units, by name. Moments of inertia: ``principal``, shape (n, 3), for a
         body given along principal axes, or ``I_xx`` to ``I_yz``, shape (n,). Fields of a torque by their names in the
@@ -344,9 +352,9 @@ def propagate_ensemble(
     (2, 2, 3)
     """
     began = perf_counter()
-    source = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
+    source = scene.scene if isinstance(scene, Propagator) else load_scene(scene)
     own = scene.tolerance if isinstance(scene, Propagator) else float(source.tolerance)
-    variation = read_variation(source, omega, quaternion, parameters)
+    variation = read_variation(source, omega, quaternion, parameters, attitude)
     times = read_times(t, source, len(variation))
     if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")

@@ -21,7 +21,7 @@ from symrot.closed_form.registry import ClosedForm, Exact, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.errors import InputError
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
@@ -274,7 +274,7 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield the trajectories of one closed form in groups: row indices, a batch, and for which rows it is valid.
+    """Yield groups of trajectories of one closed form: row indices, their batch, and for which rows the batch is valid.
 
     The batch is None if the motions of the group must be computed one by one.
     """

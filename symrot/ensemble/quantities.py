@@ -17,7 +17,7 @@ __all__ = ["Source"]
 
 
 class Source(NamedTuple):
-    """What the quantities of an ensemble are computed from: its variation, and a plan valid for all its motions."""
+    """The variation of an ensemble and a plan valid for all its motions, from which quantities are computed."""
 
     variation: Variation
     plan: Plan

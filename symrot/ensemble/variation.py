@@ -20,11 +20,13 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
+from symrot.kinematics.conversions import dcm_to_quaternion
 from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["FIXED", "PLACES", "Place", "Variation", "constant_places", "read_times", "read_variation"]
 
@@ -144,7 +146,10 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants, if nearly doubles, that do not vary in the field of the constant ``name``."""
+        """Return the fixed constants of the field to which the varying constant ``name`` belongs.
+
+        Constants that are not equal to a double within 2^-200 are left out.
+        """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -277,7 +282,11 @@ def _representative(column: Floats) -> Fraction:
 
 
 def read_variation(
-    scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
+    scene: Scene,
+    omega: ArrayLike | None,
+    quaternion: ArrayLike | None,
+    parameters: Mapping[str, ArrayLike] | None,
+    attitude: Any = None,
 ) -> Variation:
     """Return the variation that the arguments of an ensemble describe, after checks; None means the value in the scene.
 
@@ -289,6 +298,10 @@ def read_variation(
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
+    if attitude is not None:
+        if quaternion is not None:
+            raise InputError("attitude: expected attitude or quaternion, got both")
+        quaternion = _quaternions(attitude)
     places = constant_places(scene)
     arrays: dict[str, Floats] = {}
     if omega is not None:
@@ -319,6 +332,18 @@ def read_variation(
     if not PLACES.keys().isdisjoint(columns):
         _check_bodies(variation)
     return variation
+
+
+def _quaternions(attitude: Any) -> ArrayLike:
+    """Return quaternions, scalar first, of n rotations of SciPy, n quaternions or n matrices ``dcm_sb``."""
+    if hasattr(attitude, "as_quat"):
+        return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
+    array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")
+    if array.shape[1:] == (3, 3):
+        return dcm_to_quaternion(array)
+    if array.shape[1:] != (4,):
+        raise InputError(f"attitude: expected an array of shape (n, 4) or (n, 3, 3), got shape {array.shape}")
+    return array
 
 
 def _check_bodies(variation: Variation) -> None:
@@ -371,7 +396,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def constant_places(scene: Scene) -> dict[str, Place]:
-    """Return the places of all constants that may vary in a scene, by their names in the plan."""
+    """Return, for each constant that may vary in a scene, its place there, by the name of the constant in the plan."""
     places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
@@ -405,6 +430,8 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
     field = next(field for field in kind.fields if field.name == place.field)
     if field.name in FIXED:
         raise InputError(f"parameters: {name} is the same for all trajectories; {FIXED[field.name]}")
+    if field.shape == "scalar or vector" and name not in places and np.ndim(values) == 1:
+        values = np.repeat(_array(values, (), name, field.unit)[:, None], len(chosen), axis=1)
     array = _array(values, () if name in places else (len(chosen),), name, field.unit)
     rows = array.reshape(len(array), -1)
     if field.sign in SIGNS and (field.sign != "nonzero" or name not in places):

@@ -51,7 +51,9 @@ class Decision:
         Relations that hold where both sides are defined: divisors are not zero, radicands are not negative. For a
         conditional claim, its requirements come first.
     requires : tuple of Requirement
+        Conditions, each of which alone makes a conditional claim true.
     counterexample : Counterexample or None
+        A point where the two sides differ, if the verdict is ``"false"``.
     reason : str
         The reason why a claim is undecided; otherwise empty.
     residual : Expr or Matrix or None
@@ -81,6 +83,7 @@ class Case(ABC):
     lefts, rights : list of Expr
         Entries of the two sides, row by row.
     shape : (int, int) or None
+        Rows and columns of both sides; None for scalars.
     ring : FormulaRing
         The ring into which the sides and the hypotheses are read.
     residuals : list of Ratio
@@ -94,6 +97,7 @@ class Case(ABC):
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None
+        A point where the two sides differ, if a stage has found one.
     """
 
     lefts: list[Expr]

@@ -41,6 +41,7 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
     Parameters
     ----------
     formula : Expr
+        The formula to evaluate.
     values : mapping
         Values of symbols, functions of time and derivatives.
     known : dict

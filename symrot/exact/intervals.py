@@ -128,6 +128,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
     Parameters
     ----------
     formula : Expr
+        The formula to evaluate.
     values : mapping, optional
         From symbols and functions of time to their values: numbers of SymPy, fractions, or intervals of mpmath.
 

@@ -200,7 +200,7 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a factor as a rational combination of inverse functions and pi, or None if it has another form."""
+    """Return a polynomial as pairs (inverse function or pi, rational factor) whose products add up to it, or None."""
     terms = []
     for mono, coefficient in factor.items():
         places = [number for number, power in enumerate(mono) if power]

@@ -48,7 +48,10 @@ def with_plain_arguments(
 
 
 def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return the normal form of each argument, the same one for arguments that are proven equal, and further rings."""
+    """Return the normal form of each argument, and the further rings of the proofs.
+
+    Arguments that are proven equal get the same normal form.
+    """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
     for argument in arguments:
@@ -79,7 +82,7 @@ def _functions(formulas: Sequence[Expr]) -> set[Expr]:
 
 
 def _level(node: Expr) -> int:
-    """Return how many functions are inside each other in the arguments of a function."""
+    """Return how deeply functions are nested in the arguments of a function."""
     return max(map(_depth, node.args))
 
 

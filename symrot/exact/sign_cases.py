@@ -62,7 +62,7 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
-    """Yield what the radicands of square roots say about the signs of polynomials: a radicand is never negative."""
+    """Yield conditions on the signs of polynomials, which follow because no radicand of a square root is negative."""
     radicands = [
         ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
     ]

@@ -1,1 +1,1 @@
-"""Exercises with proven solutions: templates, random numbers, formats for classes, and the grading of answers."""
+"""Exercises with proven solutions: templates, random numbers, printed formats, and the grading of answers."""

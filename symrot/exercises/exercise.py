@@ -1,4 +1,4 @@
-"""Exercises: a problem with numbers, its questions, its hints in three stages, and its proven solution."""
+"""Exercises: a problem whose quantities have numbers, with questions, three hints and a proven solution."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -32,16 +32,20 @@ SPACE = r"\,"
 
 @dataclass(frozen=True)
 class Datum:
-    """A quantity with its number.
+    """A given quantity of an exercise: its symbol and its value.
 
     Attributes
     ----------
     symbol : str
         Its letter as answers write it.
     latex : str
+        The symbol as LaTeX.
     value : str
+        The number as text, such as ``"0.4"`` or ``"2/3"``.
     unit : str
+        The unit of the number; empty for a pure number.
     words : str
+        The meaning of the symbol, such as ``"length"``.
 
     Examples
     --------
@@ -78,6 +82,7 @@ class Question:
     decimal : str
         The number with 17 digits; empty for a formula.
     unit : str
+        The unit of the answer; empty for a pure number.
     symbols : dict of str to str
         Symbols that the formula may use, with their units.
     positive : tuple of str
@@ -112,7 +117,9 @@ class Equation:
     Attributes
     ----------
     reason : str
+        The reason why the equation holds, one sentence.
     latex : str
+        The equation as LaTeX.
 
     Examples
     --------
@@ -127,19 +134,24 @@ class Equation:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise.
+    """One exercise with numbers: its statement, questions, hints and proven solution.
 
     Attributes
     ----------
     template, topic : str
+        The name of the template from which the exercise was made, and its topic.
     seed : int
+        The seed of the random numbers.
     title, statement : str
         Markdown.
     data : tuple of Datum
+        The given quantities with their values.
     questions : tuple of Question
+        The questions, in order.
     hints : tuple of 3 str
         Which law; the law as an equation; the equation with numbers.
     solution : tuple of Equation
+        The lines of the solution, in order.
     figure : str
         SVG, or empty.
 
@@ -162,12 +174,12 @@ class Exercise:
     figure: str = ""
 
     def to_json(self) -> dict[str, Any]:
-        """Return the exercise as JSON data, from which :meth:`from_json` makes it again."""
+        """Return the exercise as plain data for JSON; :meth:`from_json` restores an equal exercise."""
         return asdict(self)
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> "Exercise":
-        """Return the exercise that :meth:`to_json` returned as JSON data."""
+        """Return the exercise that the result of :meth:`to_json` describes."""
         plain = dict(data)
         plain["data"] = tuple(Datum(**each) for each in data["data"])
         plain["questions"] = tuple(Question(**{**q, "positive": tuple(q["positive"])}) for q in data["questions"])
@@ -177,17 +189,17 @@ class Exercise:
 
 
 def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return exercises as JSON data."""
+    """Return a sheet of exercises as plain data for JSON."""
     return {"schema": SCHEMA, "exercises": [each.to_json() for each in exercises]}
 
 
 def formula(side: Any) -> str:
-    """Return the LaTeX of a formula, with ``arccos`` for the inverse cosine."""
+    """Return the LaTeX of an expression or matrix, with ``arccos`` for the inverse cosine."""
     return re.sub(r"\\operatorname\{a(sin|cos|tan)\}", r"\\arc\1", page_formula(side))
 
 
 class _WithNumbers(PagePrinter):
-    """A printer that writes the number and unit of a quantity in place of its symbol."""
+    """A LaTeX printer that writes the value and unit of each quantity instead of its symbol."""
 
     def __init__(self, data: Mapping[Symbol, str]) -> None:
         super().__init__({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False, "inv_trig_style": "full"})
@@ -198,7 +210,7 @@ class _WithNumbers(PagePrinter):
 
 
 def make(template: str, topic: str, seed: int, problem: Problem, source: Random) -> Exercise:
-    """Return the exercise of a problem: prove its lines, draw its numbers, and compute its answers.
+    """Return an exercise made from a problem: prove its solution, choose random numbers, compute the answers.
 
     Raises
     ------
@@ -228,7 +240,10 @@ def _si(quantity: Quantity, number: str) -> Expr:
 
 
 def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
-    """Return a number for each quantity: of several draws that fit, the draw whose answers are shortest."""
+    """Return random numbers for the quantities, as pairs: of many choices, the one whose answers are shortest.
+
+    Choices that do not suit the problem, such as lengths that contradict each other, are left out.
+    """
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
     for _ in range(DRAWS):
         drawn = [(quantity, source.choice(quantity.numbers)) for quantity in problem.quantities]
@@ -243,12 +258,12 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
         if best is None or length < best[0]:
             best = length, drawn
     if best is None:
-        raise ProofError(f"{problem.title}: none of {DRAWS} draws of numbers fits the problem")
+        raise ProofError(f"{problem.title}: expected numbers that suit the problem, got none in {DRAWS} random choices")
     return best[1]
 
 
 def _length(answer: Expr) -> int:
-    """Return a measure of how awkward a number is: its digits as a decimal, and more if it has no end or is zero."""
+    """Return a measure of how awkward an answer is: its digits, or more if it is zero or not a short decimal."""
     if answer.is_zero:
         return ZERO
     if not answer.is_Rational:
@@ -291,17 +306,21 @@ def _base_unit(unit: str) -> str:
 
 
 def _used(problem: Problem, asked: Asked) -> list[Symbol]:
-    """Return the symbols of the problem that the formula uses, in the order of the problem."""
+    """Return the symbols of the problem that occur in the formula of a question, in the order of the problem."""
     return [q.symbol for q in problem.quantities if asked.formula.has(q.symbol)]
 
 
 def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
-    """Return the number that is asked for, in its unit."""
+    """Return the exact answer to a question, in the unit of the question."""
     return asked.formula.xreplace(dict(values)) / factor_of(asked.unit)
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield the numbers that follow from one quantity used wrongly: as a diameter, in degrees, in its own unit."""
+    """Yield (kind of slip with symbol, wrong answer) for each usual slip with one quantity.
+
+    The slips are: a diameter used as a radius or the reverse, degrees used as radians, and a unit that is not
+    converted.
+    """
     for quantity in problem.quantities:
         symbol = quantity.symbol
         if not asked.formula.has(symbol):
@@ -324,7 +343,7 @@ def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
 
 
 def _number_latex(exact: Expr, unit: str) -> str:
-    """Return the exact number if it is short, and its decimals where it is no short decimal itself."""
+    """Return an answer with its unit as LaTeX: exact, followed by a rounded decimal if the exact form is none."""
     rounded = decimal(exact)
     latex = _scientific(rounded)
     if not exact.is_Rational or Rational(rounded) != exact:
@@ -334,7 +353,7 @@ def _number_latex(exact: Expr, unit: str) -> str:
 
 
 def related(number: str) -> str:
-    r"""Return a number in LaTeX with the sign before it: ``=``, or ``\approx`` for a number that is rounded."""
+    r"""Return a LaTeX number preceded by ``=``, unless it already begins with ``\approx`` because it is rounded."""
     return number if number.startswith(r"\approx") else f"= {number}"
 
 
@@ -358,7 +377,7 @@ def _equation(line: Line) -> str:
 
 
 def _substituted(asked: Asked, drawn: Sequence[tuple[Quantity, str]]) -> str:
-    """Return the formula as LaTeX with numbers and units in place of symbols."""
+    """Return the formula of a question as LaTeX, with values and units instead of symbols."""
     data = {q.symbol: rf"\left({_scientific(number)}{unit_latex(q.unit)}\right)" for q, number in drawn}
     return str(_WithNumbers(data).doprint(asked.formula))
 

@@ -1,4 +1,4 @@
-"""What a template returns: a problem in symbols, with its laws as equations and the ranges of its numbers."""
+"""Problems in symbols, as templates return them: statement, law, equations of the solution, and possible numbers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,12 +12,14 @@ __all__ = ["Asked", "Line", "Problem", "Quantity", "Template", "chain", "quantit
 
 @dataclass(frozen=True)
 class Quantity:
-    """A symbol with the numbers that it may have, as texts such as ``"0.4"`` or ``"2/3"``, in a unit.
+    """A symbol, its unit, and the numbers that it may have, as texts such as ``"0.4"`` or ``"2/3"``.
 
     Attributes
     ----------
     symbol : Symbol
+        The symbol in the formulas of the problem.
     numbers : tuple of str
+        The numbers from which one is chosen at random.
     unit : str
         A unit that :mod:`symrot.checker.units.conversion` knows; empty for a pure number.
     words : str
@@ -31,17 +33,17 @@ class Quantity:
 
 
 def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
-    """Return a quantity whose numbers are written in one text, with spaces between them."""
+    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers, separated by spaces."""
     return Quantity(symbol, tuple(numbers.split()), unit, words)
 
 
 def written_sum(*terms: Any) -> Expr:
-    """Return a sum whose terms stay apart on the page: ``m*R**2/2 + m*R**2``."""
+    """Return a SymPy sum that is not simplified, so that it is printed as it is: ``m*R**2/2 + m*R**2``."""
     return Add(*terms, evaluate=False)
 
 
 def written_product(*factors: Any) -> Expr:
-    """Return a product whose factors stay apart on the page."""
+    """Return a SymPy product that is not simplified, so that it is printed factor by factor."""
     return Mul(*factors, evaluate=False)
 
 
@@ -54,6 +56,7 @@ class Line:
     claim : str
         The reason, a sentence.
     left, right : Expr or Matrix
+        The two sides of the equation.
     named : str
         LaTeX to display for the left side, if that has a name.
     relations : tuple of Expr
@@ -69,7 +72,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Asked:
-    """A quantity that the exercise asks for.
+    """A quantity that a question of the exercise asks for.
 
     Attributes
     ----------
@@ -97,26 +100,29 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return the lines that lead from a law to a result: the law as it is written, and the result if that differs."""
+    """Return solution lines: first the law as written, then, if it differs, the simplified result."""
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A problem in symbols.
+    """An exercise before its quantities get numbers.
 
     Attributes
     ----------
     title : str
+        A short title of the exercise.
     statement : str
         The text of the exercise, Markdown with formulas in ``$``.
     law : str
         The first hint: which law answers the question.
     quantities : tuple of Quantity
+        The given quantities.
     lines : tuple of Line
         The equations of the solution. The second hint shows the first of them.
     asked : tuple of Asked
+        The quantities that the questions ask for.
     fits : callable
         Whether numbers, by symbol in SI units, make sense together.
     figure : str

@@ -1,4 +1,4 @@
-"""Sheets of exercises, chosen by topic and seed."""
+"""Sheets of exercises that are chosen by topic and random seed."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,11 +16,12 @@ MOST = 1000
 
 @dataclass(frozen=True)
 class ExerciseSheet:
-    """A sheet of exercises; iterate over it, or take one by its number.
+    """A sheet of exercises; iterate over it, or take one exercise by its index.
 
     Attributes
     ----------
     exercises : tuple of Exercise
+        The exercises, in order.
 
     Examples
     --------
@@ -46,11 +47,11 @@ class ExerciseSheet:
         return self.exercises[place]
 
     def to_json(self) -> dict[str, Any]:
-        """Return the sheet as JSON data."""
+        """Return the sheet as plain data for JSON."""
         return sheet_data(self.exercises)
 
     def print(self, form: str) -> str:
-        """Return the sheet as ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``."""
+        """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``."""
         from symrot.exercises.formats import FORMATS
 
         if form not in FORMATS:
@@ -66,15 +67,15 @@ class ExerciseSheet:
         return self.print("latex")
 
     def html(self) -> str:
-        """Return the sheet as a self-contained page that grades numbers."""
+        """Return the sheet as the text of a self-contained HTML page that grades numerical answers."""
         return self.print("html")
 
     def moodle(self) -> str:
-        """Return the sheet as Moodle XML, which Moodle imports into its question bank."""
+        """Return the sheet as Moodle XML, for import into a question bank."""
         return self.print("moodle")
 
     def json(self) -> str:
-        """Return the sheet as JSON, which ``symrot grade`` reads."""
+        """Return the sheet as JSON text, which ``symrot grade`` reads."""
         return self.print("json")
 
     def _repr_markdown_(self) -> str:
@@ -82,7 +83,7 @@ class ExerciseSheet:
 
 
 def exercise(topic: str = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet:
-    """Return exercises with numbers, hints and proven solutions.
+    """Return a sheet of exercises with random numbers, hints and proven solutions.
 
     Parameters
     ----------
@@ -127,7 +128,7 @@ def _exercise(name: str, seed: int) -> Exercise:
 
 
 def read_sheet(data: Any, where: str) -> ExerciseSheet:
-    """Return the sheet of JSON data, raising InputError for data that no sheet wrote."""
+    """Return the sheet that JSON data describe; raise InputError if no sheet printed these data."""
     try:
         if data["schema"] != SCHEMA:
             raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")

@@ -1,4 +1,4 @@
-"""Two simple sketches as SVG, in the colour of the text around them, with a title for screen readers."""
+"""Two line drawings for exercises as SVG; they take the text's colour and have a title for screen readers."""
 
 __all__ = ["crank_and_slider", "hanging_rod"]
 
@@ -20,7 +20,7 @@ def _circle(x: int, y: int, radius: int, fill: str = "none") -> str:
 
 
 def hanging_rod() -> str:
-    """Return a rod that hangs from an axis at its upper end, with its length and its centre."""
+    """Return an SVG drawing of a rod that hangs from an axis at its upper end, with length and centre marked."""
     return _drawing(
         "A rod that hangs from an axis at its upper end", 160, 200,
         '<path d="M50 22 H110"/><path d="M80 30 L120 170" stroke-width="6"/>',
@@ -31,7 +31,7 @@ def hanging_rod() -> str:
 
 
 def crank_and_slider() -> str:
-    """Return a crank, a connecting rod and a piston on a line through the crank's axis."""
+    """Return an SVG drawing of a crank, a connecting rod and a piston on a line through the crank's axis."""
     return _drawing(
         "A crank, a connecting rod and a piston", 300, 130,
         '<path d="M10 90 H290" stroke-dasharray="3 5" stroke-width="1"/>',

@@ -30,7 +30,7 @@ _SIGNS = (
 
 
 def unit_of(text: str) -> UnitProduct | None:
-    """Return a unit such as ``kg m^2/s``, or None for a text that is no unit.
+    """Return a unit such as ``kg m^2/s``, parsed from text, or None if the text is not a unit.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def factor_of(unit: str) -> Expr:
 
 
 def unit_latex(unit: str) -> str:
-    """Return the LaTeX of a unit: upright, with superscripts for powers, and nothing for a pure number."""
+    """Return a unit as LaTeX, upright with superscripts for powers; an empty text for a pure number."""
     if unit == "deg":
         return r"^\circ"
     reciprocal = _RECIPROCAL.match(unit)
@@ -81,7 +81,7 @@ def unit_latex(unit: str) -> str:
 
 
 def decimal(value: Any, digits: int = 4) -> str:
-    """Return a number with so many significant digits, without an exponent where that is short.
+    """Return a number as text, rounded to ``digits`` significant digits, without an exponent if that is short.
 
     Examples
     --------

@@ -21,7 +21,7 @@ PRIMES = ("", "′", "″", "‴")
 
 
 def plane_rotation() -> Picture:
-    """Draw a frame and the frame rotated about their shared axis, with the components of a vector in both."""
+    """Draw a frame, the same frame rotated about an axis normal to the page, and a vector's components in both."""
     picture, plane, angle = Picture(), Plane(150), 28.0
     turned = rotation((0, 0, 1), angle)[:2, :2]
     vector = np.array([0.62, 0.86])
@@ -37,7 +37,7 @@ def plane_rotation() -> Picture:
 
 
 def rodrigues_rotation() -> Picture:
-    """Draw a vector rotated about an axis, with its parts along and across the axis."""
+    """Draw a vector before and after a rotation about an axis, with its components along and across the axis."""
     picture, view = Picture(), View(azimuth=35, elevation=22, scale=150)
     axis, vector = np.array([0.0, 0.0, 1.0]), np.array([0.75, -0.35, 0.85])
     along = (vector @ axis) * axis
@@ -56,7 +56,7 @@ def rodrigues_rotation() -> Picture:
 
 
 def order_of_rotations() -> Picture:
-    """Draw the frames that a quarter rotation about x and one about y give, in both orders."""
+    """Draw a box after quarter rotations about x and about y, first in one order and then in the other."""
     picture = Picture()
     about_x, about_y = rotation((1, 0, 0), 90.0), rotation((0, 1, 0), 90.0)
     rows = (
@@ -75,7 +75,7 @@ def order_of_rotations() -> Picture:
 
 
 def _brick(picture: Picture, view: View, matrix: Floats) -> None:
-    """Draw a box with its axes in an attitude: the faces that are turned toward the eye."""
+    """Draw a box with its axes in a given attitude; only the faces that point toward the viewer are drawn."""
     half = np.array([0.9, 0.55, 0.22])
     for i in range(3):
         for sign in (1.0, -1.0):
@@ -95,13 +95,16 @@ def _brick(picture: Picture, view: View, matrix: Floats) -> None:
 
 
 def intermediate_frames(sequence: str, angles: Sequence[float]) -> list[Floats]:
-    """Return the frames before, between and after the three rotations of an intrinsic sequence, angles in degrees."""
+    """Return four frames: before, between and after the three rotations of an intrinsic sequence.
+
+    Each frame is a matrix whose columns are its axes; ``angles`` are in degrees.
+    """
     steps = [[angle if i < n else 0.0 for i, angle in enumerate(angles)] for n in range(4)]
     return [np.asarray(euler_to_dcm(step, sequence, degrees=True), dtype=float) for step in steps]
 
 
 def _three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[str], azimuth: float) -> Picture:
-    """Draw each rotation of an intrinsic sequence in a panel of its own."""
+    """Draw the three rotations of an intrinsic sequence, one in each panel; angles in degrees."""
     picture, frames = Picture(), intermediate_frames(sequence, angles)
     for n in range(3):
         view = View(azimuth, elevation=25, scale=82, origin=(220.0 * n, 0.0))
@@ -122,23 +125,23 @@ def _three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[s
 
 
 def proper_euler() -> Picture:
-    """Draw the three rotations of ZXZ: precession, nutation and spin."""
+    """Draw the three rotations of the sequence ZXZ: precession, nutation and spin."""
     return _three_rotations("ZXZ", (40.0, 38.0, 45.0), ("ϕ", "θ", "ψ"), 35.0)
 
 
 def tait_bryan() -> Picture:
-    """Draw the three rotations of ZYX: yaw, pitch and roll."""
+    """Draw the three rotations of the sequence ZYX: yaw, pitch and roll."""
     return _three_rotations("ZYX", (40.0, 30.0, 40.0), ("ψ", "θ", "ϕ"), 8.0)
 
 
 def gimbals(sequence: str, angles: Sequence[float]) -> list[Floats]:
-    """Return the axes about which the outer, middle and inner ring of a gimbal turn, in space."""
+    """Return the space components of the axes of a gimbal's outer, middle and inner ring; angles in degrees."""
     frames = intermediate_frames(sequence, angles)
     return [frames[n][:, "XYZ".index(letter)] for n, letter in enumerate(sequence)]
 
 
 def gimbal_lock() -> Picture:
-    """Draw the rings of a gimbal in a general attitude, and locked, with the outer and the inner axis in one line."""
+    """Draw a gimbal in a general attitude, and at gimbal lock, where the outer and the inner axis coincide."""
     picture = Picture()
     for column, (words, angles) in enumerate((("three axes", (25.0, 35.0, 20.0)), ("locked", (25.0, 90.0, 20.0)))):
         view = View(azimuth=32, elevation=24, scale=88, origin=(330.0 * column, 0.0))
@@ -157,7 +160,7 @@ def gimbal_lock() -> Picture:
 
 
 def double_cover() -> Picture:
-    """Draw the quaternions of the rotations about one axis: a circle that two full rotations go round once."""
+    """Draw the unit quaternions of all rotations about one axis: a circle, passed once in two full rotations."""
     picture, plane, angle = Picture(), Plane(120), 100.0
     one = np.asarray(axis_angle_to_quaternion((0, 0, 1), angle, degrees=True))[[0, 3]]
     turn = np.linspace(0.0, 720.0, 145)
@@ -181,7 +184,7 @@ def double_cover() -> Picture:
 
 
 def projected_quaternions() -> Picture:
-    """Draw the projections of a quaternion to the classical and to the modified Rodrigues parameters."""
+    """Draw how a unit quaternion is projected to the classical and the modified Rodrigues parameters."""
     picture, plane, angle = Picture(), Plane(110), 104.0
     q = np.asarray(axis_angle_to_quaternion((0, 0, 1), angle, degrees=True))[[3, 0]]  # q0 upward
     turn = np.linspace(0.0, 2 * np.pi, 121)
@@ -205,7 +208,7 @@ def projected_quaternions() -> Picture:
 
 
 def angular_velocity() -> Picture:
-    """Draw the velocity of a point of a rotating body: across the axis and the radius."""
+    """Draw the velocity of a point of a rotating body, which is perpendicular to the axis and to the radius."""
     picture, view = Picture(), View(azimuth=35, elevation=22, scale=150)
     axis = unit((0.25, 0.1, 1.0))
     point = np.array([0.3, 0.75, 0.75])
@@ -225,7 +228,10 @@ def angular_velocity() -> Picture:
 
 
 def rotation_vectors() -> Picture:
-    """Draw the ball of rotation vectors, with one rotation as a point and its other point beyond the ball."""
+    """Draw the ball of rotation vectors of length up to pi, with two vectors of one rotation.
+
+    One of the two, ``alpha n``, is inside the ball; the other, ``(alpha - 2 pi) n``, points the opposite way beyond it.
+    """
     picture, plane = Picture(), Plane(38)
     turn = np.linspace(0.0, 2 * np.pi, 121)
     circle_points = np.pi * np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -246,7 +252,7 @@ def rotation_vectors() -> Picture:
 
 
 def two_points() -> Picture:
-    """Draw the velocities of two points of a body that moves in a plane."""
+    """Draw the velocities of two points of a body in plane motion."""
     picture, plane = Picture(), Plane(120)
     first, second, speed = np.array([0.0, 0.0]), np.array([1.35, 0.55]), 0.55
     carried = np.array([0.7, -0.25])

@@ -15,14 +15,14 @@ TURN = np.linspace(0.0, 2 * np.pi, 121)
 
 
 def unit(vector: ArrayLike) -> Floats:
-    """Return the direction of a vector."""
+    """Return a vector divided by its length."""
     array = np.asarray(vector, dtype=float)
     direction: Floats = array / np.linalg.norm(array)
     return direction
 
 
 def basis(normal: ArrayLike) -> tuple[Floats, Floats]:
-    """Return two unit vectors that form a right-handed triad with a normal, the second as far upward as can be."""
+    """Return two unit vectors that form a right-handed triad with a normal; the second points upward if possible."""
     n = unit(normal)
     helper = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.99 else np.array([1.0, 0.0, 0.0])
     first = unit(np.cross(helper, n))
@@ -30,24 +30,24 @@ def basis(normal: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def circle(centre: ArrayLike, normal: ArrayLike, radius: float, angles: Floats = TURN) -> Floats:
-    """Return points of a circle about a normal, shape (n, 3)."""
+    """Return points of a circle in space, shape (n, 3), at angles in rad; ``normal`` is perpendicular to its plane."""
     first, second = basis(normal)
     points: Floats = np.asarray(centre) + radius * (np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second))
     return points
 
 
 def rotation(axis: ArrayLike, angle: float) -> Floats:
-    """Return the matrix of a rotation about an axis by an angle in degrees."""
+    """Return the rotation matrix, shape (3, 3), of a rotation about an axis; the angle is in degrees."""
     return np.asarray(quaternion_to_dcm(axis_angle_to_quaternion(unit(axis), angle, degrees=True)), dtype=float)
 
 
 def rotated(point: ArrayLike, axis: ArrayLike, angle: float, count: int = 41) -> Floats:
-    """Return the arc that a point describes when it is rotated about an axis by an angle in degrees."""
+    """Return the positions of a point during a rotation about an axis, shape (count, 3); the angle is in degrees."""
     return np.array([rotation(axis, part) @ np.asarray(point) for part in np.linspace(0.0, angle, count)])
 
 
 def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLike = (0, 0, 0)) -> Floats:
-    """Return the arc from one direction to another by the shorter way, shape (n, 3)."""
+    """Return points of the shorter arc from one direction to another, shape (n, 3), on a circle about ``centre``."""
     a, b = unit(start), unit(end)
     across = unit(b - a * (a @ b))
     angles = np.linspace(0.0, float(np.arccos(np.clip(a @ b, -1, 1))), 41)
@@ -56,14 +56,17 @@ def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLi
 
 
 def outline(shape: Floats, view: View) -> Floats:
-    """Return the outline of an ellipsoid ``x · shape x = 1`` as it is seen: where its normal is across the view."""
+    """Return the visible outline of the ellipsoid ``x · shape x = 1``, shape (n, 3).
+
+    At its points the normal of the ellipsoid is perpendicular to the line of sight.
+    """
     inverse = np.linalg.inv(shape)
     root = np.linalg.cholesky(inverse)  # maps the unit sphere to the ellipsoid
     return circle((0, 0, 0), root.T @ shape @ view.toward, 1.0) @ root.T
 
 
 def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
-    """Return for each point, not inside the ellipsoid ``x · shape x = 1``, whether the ellipsoid does not hide it."""
+    """Return, for each point, whether it is not hidden behind the ellipsoid ``x · shape x = 1``; no point is inside."""
     ahead = shape @ view.toward
     square, middle = view.toward @ ahead, points @ ahead
     rest = np.einsum("ni,ij,nj->n", points, shape, points) - 1.0
@@ -72,16 +75,16 @@ def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
 
 
 def turning(start: ArrayLike, end: ArrayLike) -> Floats:
-    """Return the quaternion of the shortest rotation that carries one direction to another."""
+    """Return the unit quaternion of the shortest rotation that maps one direction to another."""
     a, b = unit(start), unit(end)
     angle = float(np.arccos(np.clip(a @ b, -1, 1)))
     return np.asarray(axis_angle_to_quaternion(unit(np.cross(a, b)), angle), dtype=float)
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return the rim of a cone with its apex at the origin, and the lines of its outline from the apex to the rim.
+    """Return points of a cone's rim, and the lines from its apex, the origin, that bound the cone as it is seen.
 
-    There is no outline if the eye looks into the cone.
+    There are no such lines if the line of sight lies inside the cone. The half angle is in rad.
     """
     n, radius = unit(axis), length * np.sin(half_angle)
     rim = circle(length * np.cos(half_angle) * n, n, radius)
@@ -99,5 +102,5 @@ def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple
 
 
 def frame(matrix: Floats, length: float = 1.0) -> list[tuple[Floats, Floats]]:
-    """Return the three axes of a frame, the columns of a matrix, as lines from the origin."""
+    """Return the axes of a frame as three lines from the origin; the columns of ``matrix`` are their directions."""
     return [(np.zeros(3), length * matrix[:, i]) for i in range(3)]

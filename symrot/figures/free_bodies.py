@@ -1,4 +1,4 @@
-"""Figures of free bodies: Poinsot's construction, polhodes and cones, from motions in closed form."""
+"""Figures of free bodies: Poinsot's construction, polhodes and cones, drawn from motions in closed form."""
 
 from itertools import pairwise
 from typing import Any
@@ -24,7 +24,7 @@ VIEW = View(azimuth=58, elevation=24, scale=120)
 
 
 def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion: Any = None) -> Trajectory:
-    """Return the motion of a free body of principal moments, kg m^2, from a start omega, rad/s, in closed form."""
+    """Return the torque-free motion of a body with given principal moments, kg m^2, and initial omega, rad/s."""
     scene = {
         "schema": 1,
         "title": "free body of a figure",
@@ -36,7 +36,7 @@ def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion:
 
 
 def one_period(moments: ArrayLike, start: Floats) -> Trajectory:
-    """Return the motion over one period of omega, from a start where a component of omega is zero."""
+    """Return a free motion over one period of omega; exactly one component of the initial omega must be zero."""
     (zero,) = np.flatnonzero(start == 0.0)
     times = np.linspace(0.0, 80.0, 4001)
     component = free_motion(moments, start, times).omega[:, zero]
@@ -47,20 +47,23 @@ def one_period(moments: ArrayLike, start: Floats) -> Trajectory:
 
 
 def rolling_ellipsoid() -> tuple[Floats, Trajectory]:
-    """Return the moments of the body of Poinsot's figure, and its motion; its momentum points straight down."""
+    """Return the principal moments and the motion of the body in the figure of Poinsot's construction.
+
+    The angular momentum points straight down in space.
+    """
     moments, start = np.array([1.0, 1.5, 2.3]), np.array([0.9, 0.0, 0.8])
     return moments, free_motion(moments, start, np.linspace(0.0, 20.0, 401), turning(moments * start, (0, 0, -1)))
 
 
 def contact_ellipsoid(moments: Floats, motion: Trajectory, place: int) -> Floats:
-    """Return the matrix S of the ellipsoid of energy ``x · S x = 1`` in space, at a sample of a motion."""
+    """Return the matrix S of the energy ellipsoid ``x · S x = 1`` in space axes, at sample ``place`` of a motion."""
     dcm = motion.dcm[place]
     shape: Floats = dcm @ np.diag(moments) @ dcm.T / (moments @ motion.omega[place] ** 2)
     return shape
 
 
 def poinsot() -> Picture:
-    """Draw the ellipsoid of energy on the invariable plane, with polhode and herpolhode."""
+    """Draw Poinsot's construction: the energy ellipsoid on the invariable plane, with polhode and herpolhode."""
     place = 40
     moments, motion = rolling_ellipsoid()
     start = motion.omega[0]
@@ -88,7 +91,10 @@ def poinsot() -> Picture:
 
 
 def polhode_curves() -> tuple[list[Floats], Floats]:
-    """Return the polhodes of the figure, and the separatrix, on the ellipsoid of energy 2T = 1, in the body, rad/s."""
+    """Return polhodes and the two curves of the separatrix, rad/s, body axes, at kinetic energy 1/2.
+
+    Each curve has the shape (n, 3) and lies on the energy ellipsoid of the moments :data:`MOMENTS`.
+    """
     axes = 1 / np.sqrt(MOMENTS)
     starts = []
     for axis in (0, 2):
@@ -108,7 +114,7 @@ def polhode_curves() -> tuple[list[Floats], Floats]:
 
 
 def polhodes() -> Picture:
-    """Draw polhodes around the axes of an ellipsoid of energy, and the separatrix."""
+    """Draw polhodes and the separatrix on an energy ellipsoid."""
     picture, shape = Picture(), np.diag(MOMENTS)
     loops, planes = polhode_curves()
     scale = View(VIEW.azimuth, VIEW.elevation, 170)
@@ -123,14 +129,14 @@ def polhodes() -> Picture:
 
 
 def _principal_axes(picture: Picture, view: View, axes: Floats, reach: float = 0.32) -> None:
-    """Draw the principal axes from the surface of an ellipsoid outward."""
+    """Draw the parts of the principal axes that are outside an ellipsoid."""
     for i, semi_axis in enumerate(axes):
         direction = np.eye(3)[i]
         picture.arrow(view, semi_axis * direction, (semi_axis + reach) * direction, f"ω_{i + 1}")
 
 
 def momentum_sphere() -> Picture:
-    """Draw the sphere of angular momentum and the paths on it at different energies."""
+    """Draw the paths of the angular momentum, in body axes, on a sphere: one path for each of several energies."""
     picture, view = Picture(), View(VIEW.azimuth, VIEW.elevation, 125)
     picture.area(view, outline(np.eye(3), view), "fill-soft")
     picture.curve(view, outline(np.eye(3), view), "soft", closed=True)
@@ -147,7 +153,10 @@ def momentum_sphere() -> Picture:
 
 
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
-    """Return the directions in space of L, omega and the axis of symmetry of a free body of moments A, A, C."""
+    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
+
+    The moments are (A, C), across and along the axis; ``nutation``, rad, is the angle from L to the axis.
+    """
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1
     start = momentum / np.array([a, a, c])
@@ -156,7 +165,7 @@ def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats,
 
 
 def _cones(moments: tuple[float, float], nutation: float, view: View) -> Picture:
-    """Draw the body cone on the space cone of a free symmetric body, at the start of its motion."""
+    """Draw the body cone and the space cone of a free symmetric body, which touch along omega."""
     momentum, omega, axis = cone_vectors(moments, nutation)
     picture = Picture()
     for direction, colour, label in ((momentum, "green", "space cone"), (axis, "blue", "body cone")):
@@ -185,19 +194,19 @@ def direct_cones() -> Picture:
 
 
 def retrograde_cones() -> Picture:
-    """Draw the cones of a flat body: the body cone rolls around the space cone, which is inside it."""
+    """Draw the cones of a flat body: the space cone is inside the body cone, which rolls around it."""
     return _cones((1.0, 1.7), np.radians(26), View(azimuth=-75, elevation=24, scale=150))
 
 
 def rates() -> Picture:
-    """Draw the three components of omega of a free body of three different moments over time."""
+    """Plot the three components of omega over time for a free body with three different moments."""
     times = np.linspace(0.0, 23.0, 361)
     motion = free_motion(MOMENTS, (0.25, 0.9, 0.65), times)
     return _components(times, motion.omega)
 
 
 def _components(times: Floats, omega: Floats, at: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Picture:
-    """Plot the components of omega, with labels at these shares of the time."""
+    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the time."""
     picture = Picture()
     limit = 1.12 * float(np.abs(omega).max())
     axes = Axes(picture, (times[0], times[-1]), (-limit, limit), (420, 200))
@@ -208,13 +217,13 @@ def _components(times: Floats, omega: Floats, at: tuple[float, float, float] = (
 
 
 def flips() -> Picture:
-    """Draw the component of omega along the intermediate axis of the T-handle, and the others, over time."""
+    """Plot the components of omega over time for the T-handle, whose intermediate axis reverses again and again."""
     times = np.linspace(0.0, 3.6, 541)
     return _components(times, propagator("t_handle")(times).omega)
 
 
 def separatrix() -> Picture:
-    """Draw omega over time on the separatrix."""
+    """Plot the components of omega over time for the motion on the separatrix."""
     _, planes = polhode_curves()
     times = np.linspace(-12.0, 12.0, 361)
     return _components(times, free_motion(MOMENTS, planes[0][0], times).omega, (0.55, 0.9, 0.45))

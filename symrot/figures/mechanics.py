@@ -19,7 +19,7 @@ __all__ = [
 
 
 def momentum_and_rate() -> Picture:
-    """Draw the ellipsoid of energy with omega and the angular momentum, which is along its normal."""
+    """Draw the energy ellipsoid with omega, and with the angular momentum, which is normal to the surface there."""
     picture, view = Picture(), View(azimuth=-28, elevation=20, scale=120)
     moments = np.array([0.55, 1.0, 2.2])
     axes = 1 / np.sqrt(moments)
@@ -68,7 +68,7 @@ def parallel_axes() -> Picture:
 
 
 def principal_axes() -> Picture:
-    """Draw a body in tilted axes, with the axes in which its tensor is diagonal."""
+    """Draw a body in axes in which its inertia tensor is not diagonal, and with its principal axes."""
     picture, plane = Picture(), Plane(110)
     turned = rotation((0, 0, 1), 32.0)[:2, :2]
     body = (np.stack([np.cos(TURN), np.sin(TURN)], axis=1) * (1.05, 0.5)) @ turned.T
@@ -83,9 +83,9 @@ def principal_axes() -> Picture:
 
 
 def struck_velocities(offset: float, points: Floats) -> Floats:
-    """Return the velocities across a struck rod of unit mass, half length and impulse, at points along it.
+    """Return the transverse velocity of points of a rod just after a blow; mass, half length, impulse are 1.
 
-    The blow is at a distance from the centre; the moment of the rod is that of the solid ``rod``.
+    ``offset`` is the distance of the blow from the centre, ``points`` are distances from the centre.
     """
     moment = float(solid("rod", length=2).with_mass(1).inertia[0, 0])
     velocities: Floats = 1.0 + offset / moment * points
@@ -93,7 +93,7 @@ def struck_velocities(offset: float, points: Floats) -> Floats:
 
 
 def struck_rod() -> Picture:
-    """Draw a rod after a blow beside its centre, with the velocities of its points and the point that stays."""
+    """Draw a rod after an off-centre blow, with the velocities of its points and the point that stays at rest."""
     picture, plane = Picture(), Plane(105)
     offset = 0.62
     points = np.linspace(-1.0, 1.0, 9)
@@ -115,7 +115,7 @@ def struck_rod() -> Picture:
 
 
 def torque_and_rate() -> Picture:
-    """Draw the change of the angular momentum of a body in a short time, along the torque."""
+    """Draw how the angular momentum of a body changes in a short time in the direction of the torque."""
     picture, view = Picture(), View(azimuth=-60, elevation=18, scale=150)
     start = np.array([0.2, 0.1, 1.0])
     torque = np.array([0.55, 0.3, 0.05])
@@ -160,7 +160,7 @@ TEETH = {"sun": 24, "planet": 12, "ring": 48}
 def _gear(
     picture: Picture, plane: Plane, centre: Floats, teeth: int, start: float, style: str, inner: bool = False
 ) -> None:
-    """Draw a gear; its pitch radius is a hundredth of a unit for each half tooth, its teeth are as high as wide."""
+    """Draw the outline of a gear, filled unless ``inner``; its pitch radius in the plane is ``teeth/24``."""
     angles = start + np.linspace(0, 2 * np.pi, teeth * 12 + 1)
     radius = teeth / 24 + 0.028 * np.tanh(4 * np.sin(teeth * (angles - start)))
     points = centre + radius[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -227,7 +227,10 @@ BARS = {"a": 0.6, "b": 1.5, "c": 1.2, "ground": 1.55}
 
 
 def four_bar_positions(phi: Floats) -> tuple[Floats, Floats]:
-    """Return the two moving pins of the four bars :data:`BARS` at angles of the crank, by the circles of the bars."""
+    """Return the positions of the two moving pins of a four-bar linkage, each (n, 2), at crank angles in rad.
+
+    The lengths of the bars are :data:`BARS`; the second pin is where the circles of two bars intersect.
+    """
     first = BARS["a"] * np.stack([np.cos(phi), np.sin(phi)], axis=1)
     ground = np.array([BARS["ground"], 0.0])
     between = ground - first
@@ -241,7 +244,7 @@ def four_bar_positions(phi: Floats) -> tuple[Floats, Floats]:
 
 
 def four_bars() -> Picture:
-    """Draw four hinged bars, with the path of a point of the coupler over a whole rotation of the crank."""
+    """Draw a four-bar linkage, with the path of a coupler point over a full rotation of the crank."""
     picture, plane = Picture(), Plane(120)
     first, second = four_bar_positions(TURN)
     coupler = second - first
@@ -270,7 +273,7 @@ def four_bars() -> Picture:
 
 
 def elliptic_curves() -> Picture:
-    """Draw Jacobi's elliptic functions sn, cn and dn over their argument."""
+    """Plot Jacobi's elliptic functions sn, cn and dn over their argument."""
     picture, parameter = Picture(), 0.8
     argument = np.linspace(0.0, 4 * float(mp.ellipk(parameter)), 161)
     plot = Axes(picture, (0.0, argument[-1]), (-1.15, 1.15), (400, 190))
@@ -284,7 +287,7 @@ def elliptic_curves() -> Picture:
 
 
 def driven_rates() -> Picture:
-    """Draw omega of a body under a constant torque and damping about its axis, from its closed form."""
+    """Plot the closed form of omega for a body under a constant torque and damping about its symmetry axis."""
     picture, times = Picture(), np.linspace(0.0, 5.0, 101)
     plot = Axes(picture, (0.0, 5.0), (0.0, 2.2), (380, 170))
     for start, colour in ((0.0, "blue"), (2.0, "red"), (1.0, "green")):

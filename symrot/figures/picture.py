@@ -50,7 +50,7 @@ STYLE = (
 
 
 class Picture:
-    """Picture to which parts are added; :meth:`svg` returns its text, cropped to what was drawn.
+    """A picture to which lines, areas, arrows and labels are added; :meth:`svg` returns it, cropped to its content.
 
     Parameters of its methods: ``points`` are rows in the coordinates of ``view``; ``style`` names classes of
     :data:`STYLE`, a colour among them.
@@ -64,7 +64,7 @@ class Picture:
         self, view: View | Plane, points: Points, style: str = "ink", visible: NDArray[np.bool_] | None = None,
         closed: bool = False, hidden: str = "dashed",
     ) -> None:  # fmt: skip
-        """Draw a line through points; where ``visible`` is false, a body hides it, and ``hidden`` is its style."""
+        """Draw a line through points, with the style ``hidden`` for the points at which ``visible`` is false."""
         places = view.project(points)
         if visible is None:
             self._path(places, style, closed)
@@ -73,14 +73,14 @@ class Picture:
             self._path(places[run], style if front else f"{style.split()[0]} {hidden}")
 
     def area(self, view: View | Plane, points: Points, style: str = "fill-blue") -> None:
-        """Fill an area faintly; with ``solid`` in the style, fully."""
+        """Fill an area with a faint colour, or with the full colour if ``style`` contains ``solid``."""
         self._path(view.project(points), style if "solid" in style else f"{style} area", True)
 
     def arrow(
         self, view: View | Plane, start: ArrayLike, end: ArrayLike, label: str = "", style: str = "ink",
         aside: tuple[float, float] | None = None,
     ) -> None:  # fmt: skip
-        """Draw an arrow; its label is beyond the tip, or moved from the tip by ``aside`` (points, y downward)."""
+        """Draw an arrow with its label beyond the tip, or moved from the tip by ``aside`` (SVG units, y downward)."""
         tail, tip = view.project(np.array([start, end], dtype=float))
         length = float(np.hypot(*(tip - tail)))
         if length > 1e-9:
@@ -96,7 +96,7 @@ class Picture:
         self, view: View | Plane, points: ArrayLike, label: str = "", style: str = "ink", head: bool = True,
         out: float = 11.0,
     ) -> None:  # fmt: skip
-        """Draw an arc with a head at its end, and a label at its middle, on the side away from its centre."""
+        """Draw an arc with an arrow head at its end, and a label outside its middle."""
         places = view.project(points)
         self._path(places, style)
         if head:
@@ -112,13 +112,13 @@ class Picture:
             self._text(middle + out * direction * np.array([max(1.0, _width(label) / 16), 1.0]), label)
 
     def dot(self, view: View | Plane, point: ArrayLike, style: str = "ink", radius: float = 2.6) -> None:
-        """Draw a point."""
+        """Draw a point as a filled circle."""
         (centre,) = view.project(point)
         turn = np.linspace(0.0, 2 * np.pi, 17)
         self._path(centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), f"fill-{style} solid", True)
 
     def label(self, view: View | Plane, point: ArrayLike, text: str, aside: tuple[float, float] = (0.0, 0.0)) -> None:
-        """Write a label, moved from a point by ``aside`` (points, y downward).
+        """Write a label at a point, moved by ``aside`` (SVG units, y downward).
 
         A label of one letter, with or without a subscript after ``_``, is in italics; other text is upright.
         """
@@ -126,7 +126,7 @@ class Picture:
         self._text(place + np.array(aside), text)
 
     def svg(self, title: str, description: str) -> str:
-        """Return the picture as a document of SVG with its title and its description for readers of screens."""
+        """Return the picture as SVG text; screen readers read its title and its description."""
         corners = np.concatenate(self._corners)
         low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
         (x, y), (width, height) = low, high - low
@@ -163,7 +163,7 @@ class Picture:
 
 
 def _is_straight(places: Floats) -> bool:
-    """Return whether all points are on the line from the first to the last, to a hundredth of a point."""
+    """Return whether all points lie within 0.005 SVG units of the line from the first to the last point."""
     chord = places[-1] - places[0]
     length = float(np.hypot(*chord))
     offsets = places - places[0]
@@ -176,7 +176,7 @@ def _number(value: float) -> str:
 
 
 def _runs(visible: NDArray[np.bool_]) -> Iterator[tuple[bool, slice]]:
-    """Yield the parts of a line that are visible or hidden throughout, each up to the first point of the next part."""
+    """Yield the stretches of a line as (visible, slice of points); each ends with the first point of the next one."""
     changes = np.flatnonzero(np.diff(visible.astype(int))) + 1
     bounds = [0, *changes.tolist(), len(visible)]
     for first, last in pairwise(bounds):
@@ -195,7 +195,7 @@ def _width(text: str) -> float:
 
 
 def _spans(text: str) -> Iterator[str]:
-    """Yield the text of a label, with what follows ``_`` lowered, up to the next letter that is not a subscript."""
+    """Yield the SVG text of a label piece by piece; letters that follow ``_`` become a subscript."""
     for number, piece in enumerate(re.split(r"_([\w⊥∥]+)", text)):
         if not number % 2:
             after = ' dy="-4"' if number else ""

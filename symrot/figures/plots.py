@@ -9,11 +9,12 @@ __all__ = ["Axes"]
 
 
 class Axes:
-    """Rectangle of a picture in which curves are plotted.
+    """A rectangle of a picture in which curves are plotted over a horizontal variable.
 
     Parameters
     ----------
     picture : Picture
+        The picture to which the plot is added.
     x, y : (float, float)
         The limits of the two variables.
     size : (float, float)
@@ -32,16 +33,16 @@ class Axes:
         self.plane = Plane(scale_x, (corner[0] - scale_x * self.x[0], corner[1] + scale_y * self.y[0]), scale_y)
 
     def frame(self, x_label: str, y_label: str) -> None:
-        """Draw the axes with their labels: the level axis at zero, or at the bottom if zero is outside."""
+        """Draw both axes with their labels; the horizontal axis is at y = 0, or at the bottom if 0 is out of range."""
         (left, right), (low, high) = self.x, self.y
         zero = 0.0 if low <= 0.0 <= high else low
         self.picture.arrow(self.plane, (left, zero), (right + 0.11 * (right - left), zero), x_label, "soft")
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve, with a label at its right end, or above it at a share of its length.
+        """Draw a curve with a label at its right end, or above it at the fraction ``at`` of its length.
 
-        What is above or below the rectangle is left out.
+        Points above or below the rectangle are left out.
         """
         inside = (y >= self.y[0]) & (y <= self.y[1])
         starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
@@ -53,13 +54,13 @@ class Axes:
             self.picture.label(self.plane, (x[place], y[place]), label, (16, 0) if at == 1.0 else (6, -12))
 
     def level(self, y: float, label: str = "", style: str = "soft dashed") -> None:
-        """Draw a level line with a label at its right end."""
+        """Draw a horizontal line with a label at its right end."""
         self.picture.curve(self.plane, np.array([[self.x[0], y], [self.x[1], y]]), style)
         if label:
             self.picture.label(self.plane, (self.x[1], y), label, (16, 0))
 
     def upright(self, x: float, label: str = "", low: float | None = None, high: float | None = None) -> None:
-        """Draw an upright line, with a label below it."""
+        """Draw a vertical line with a label below it."""
         bottom, top = self.y[0] if low is None else low, self.y[1] if high is None else high
         self.picture.curve(self.plane, np.array([[x, bottom], [x, top]]), "soft dashed")
         if label:

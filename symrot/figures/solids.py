@@ -1,4 +1,4 @@
-"""Figures of the standard solids, drawn by the maps that are integrated for their inertia."""
+"""Figures of the standard solids, drawn from the maps that also give their inertia by integration."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -27,13 +27,13 @@ SPECIAL: dict[str, dict[str, Any]] = {
 }
 VIEW = View(azimuth=32, elevation=28, scale=72)
 FINE = {True: 49, False: 2}  # samples of a coordinate: an angle, or a length or share, in which a map is linear
-AHEAD = 0.012  # m: what is at most so much before a point does not hide it
+AHEAD = 0.012  # m: a triangle hides a point only if it lies farther than this in front of it
 ONCE_AROUND = 6.0
 
 
 @dataclass(frozen=True)
 class Surface:
-    """Surface of a solid as lines and triangles.
+    """The surface of a solid as lines, which are drawn, and triangles, which hide what is behind them.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Surface:
     curved: tuple[Floats, ...]
 
     def hides(self, points: Floats, view: View) -> NDArray[np.bool_]:
-        """Return for each point, shape (n, 3), whether a triangle is before it as seen from the eye."""
+        """Return, for each point, shape (n, 3), whether a triangle of the surface hides it from the viewer."""
         corners, places = self.triangles @ view.axes.T, points @ view.axes.T
         hidden = np.zeros(len(points), dtype=bool)
         if not len(corners):
@@ -70,13 +70,13 @@ class Surface:
 
 
 def sized(name: str) -> Solid:
-    """Return a standard solid of the size in which it is drawn."""
+    """Return a standard solid with the dimensions that its figure has."""
     names = [dimension.name for dimension in SHAPES[name].dimensions]
     return solid(name, **SPECIAL.get(name) or {each: SIZES[each] for each in names})
 
 
 def surface_of(body: Solid) -> Surface:
-    """Return the surface of a solid, from its map with coordinates at their limits."""
+    """Return the surface of a solid, computed from its map by setting one coordinate at a time to its limits."""
     symbols = [symbol for symbol, _, _ in body.limits]
     function = lambdify(symbols, list(body.position), "numpy")
     limits = [(float(low), float(high)) for _, low, high in body.limits]
@@ -113,7 +113,7 @@ def surface_of(body: Solid) -> Surface:
 
 
 def _grid(mapped: Any, limits: list[tuple[float, float]], face: dict[int, float], free: list[int]) -> list[Floats]:
-    """Return lines of constant angles on a curved face."""
+    """Return lines on a curved face, along each of which all coordinates but one are constant."""
     lines = []
     for constant, along in product(free, free):
         if constant == along:
@@ -127,7 +127,7 @@ def _grid(mapped: Any, limits: list[tuple[float, float]], face: dict[int, float]
 
 
 def hull(places: Floats) -> Floats:
-    """Return the corners of the convex hull of points of a plane, counter-clockwise."""
+    """Return the corners of the convex hull of points in a plane, shape (n, 2), counter-clockwise."""
     ordered = sorted({(round(float(x), 9), round(float(y), 9)) for x, y in places})
 
     def chain(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -145,7 +145,7 @@ def hull(places: Floats) -> Floats:
 
 
 def draw_solid(name: str) -> Picture:
-    """Draw a standard solid with the axes of its map and its centre of mass."""
+    """Draw a standard solid with the axes of its coordinates and its centre of mass."""
     body, picture, view = sized(name), Picture(), VIEW
     surface = surface_of(body)
     points = np.concatenate([*surface.edges, surface.triangles.reshape(-1, 3)])
@@ -177,7 +177,7 @@ def draw_solid(name: str) -> Picture:
 
 
 def _seen(picture: Picture, view: View, surface: Surface, line: Floats, style: str, hidden: str = "") -> None:
-    """Draw the visible parts of a line, and the hidden parts if a style for them is named."""
+    """Draw the visible parts of a line, and also its hidden parts if ``hidden`` names a style for them."""
     visible = ~surface.hides(line, view)
     if hidden:
         picture.curve(view, line, style, visible, hidden=hidden)
@@ -189,7 +189,7 @@ def _seen(picture: Picture, view: View, surface: Surface, line: Floats, style: s
 
 
 def solid_figures() -> tuple[Figure, ...]:
-    """Return the figure of each standard solid that has a map."""
+    """Return the figures of all standard solids that have a map."""
     return tuple(_figure(name) for name, shape in SHAPES.items() if shape.position)
 
 

@@ -1,4 +1,4 @@
-"""The figures of each derivation's page, with their captions."""
+"""The table of figures, with captions, for the page of each derivation."""
 
 from symrot.figures import attitude, free_bodies, mechanics, tops
 from symrot.figures.solids import solid_figures
@@ -318,7 +318,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
 
 
 def figures_of(name: str) -> tuple[Figure, ...]:
-    """Return the figures of a derivation's page, in order.
+    """Return the figures on the page of the derivation called ``name``, in order.
 
     Parameters
     ----------

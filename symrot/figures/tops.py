@@ -28,7 +28,10 @@ START = np.radians(40.0)  # nutation at the start, a turning point
 
 
 def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float, float] = (A, C)) -> Trajectory:
-    """Return the motion of a heavy symmetric top of unit weight and arm, from angles (0, nutation, 0) of ZXZ, rad."""
+    """Return the motion of a heavy symmetric top with weight 1 N and its centre of mass 1 m from the tip.
+
+    It starts from the ZXZ angles (0, nutation, 0), rad, with the angular velocity ``omega``, rad/s.
+    """
     scene = {
         "schema": 1,
         "title": "heavy top of a figure",
@@ -48,9 +51,10 @@ def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float,
 
 @cache
 def effective_potential() -> Callable[..., Any]:
-    """Return the effective potential of a heavy symmetric top, a function of theta, p_phi, p_psi, A, C, weight and arm.
+    """Return the effective potential of a heavy symmetric top, a function of (theta, p_phi, p_psi, A, C), in J.
 
-    It is the energy at rest in nutation, with the rates of the cyclic angles solved from their momenta.
+    It is the energy at constant nutation for given momenta p_phi and p_psi; the weight is 1 N and the centre of mass is
+    1 m from the tip.
     """
     dphi, dtheta, dpsi = symbols.angle_rates
     moments = diag(symbols.A, symbols.A, symbols.C)
@@ -65,7 +69,7 @@ def effective_potential() -> Callable[..., Any]:
 
 
 def _potential_and_path(precession: float) -> Picture:
-    """Draw the effective potential with its turning points, and beside it the path of the axis on the sphere."""
+    """Draw the effective potential with its turning points, and the path of the top's axis on a sphere."""
     picture = Picture()
     motion = top_motion((0.0, precession * np.sin(START), SPIN), START, np.linspace(0.0, 13.6, 681))
     axis = motion.dcm[:, :, 2]
@@ -95,17 +99,17 @@ def _potential_and_path(precession: float) -> Picture:
 
 
 def loops() -> Picture:
-    """Draw potential and path of a top that is pushed backward: loops."""
+    """Draw the effective potential, and the looping path of a top that starts with a backward precession."""
     return _potential_and_path(-0.42)
 
 
 def cusps() -> Picture:
-    """Draw potential and path of a top that is released at rest: cusps."""
+    """Draw the effective potential, and the path with cusps of a top whose axis starts at rest."""
     return _potential_and_path(0.0)
 
 
 def waves() -> Picture:
-    """Draw potential and path of a top that is pushed forward: waves."""
+    """Draw the effective potential, and the wavy path of a top that starts with a forward precession."""
     return _potential_and_path(0.22)
 
 
@@ -171,7 +175,7 @@ def hung_wheel() -> Picture:
 
 
 def sleeping_potential() -> Picture:
-    """Draw the effective potential around the vertical for a fast top, one at the limit, and a slow one."""
+    """Plot the effective potential near the vertical for a fast top, a top at the limit, and a slow top."""
     picture = Picture()
     angle = np.radians(np.linspace(-78.5, 78.5, 158))
     plot = Axes(picture, (angle[0], angle[-1]), (-0.35, 0.75), (340, 220))
@@ -185,7 +189,7 @@ def sleeping_potential() -> Picture:
 
 
 def pendulum_phases() -> Picture:
-    """Draw a pendulum, and beside it the phase curves of motions that swing, turn over, or reach the top."""
+    """Draw a pendulum and its phase curves: oscillations, full rotations, and the motion that ends at the top."""
     picture, plane = Picture(), Plane(120, (0.0, -60.0))
     angle = np.radians(38.0)
     bob = np.array([np.sin(angle), -np.cos(angle)])
@@ -212,7 +216,10 @@ def pendulum_phases() -> Picture:
 
 
 def pendulum_angle(speed: float, times: Floats) -> tuple[Floats, Floats]:
-    """Return angle from the lowest place, rad, and its rate of a pendulum that starts there, from its closed form."""
+    """Return angle, rad, and angular rate of a pendulum at the times, in closed form.
+
+    It starts at the lowest position with the rate ``speed``, rad/s.
+    """
     motion = top_motion((speed, 0.0, 0.0), np.pi, np.sort(times), (1.0, 0.5))
     q = motion.quaternion
     half = np.unwrap(np.arctan2(q[:, 1], q[:, 0]))
@@ -240,7 +247,7 @@ def spherical_pendulum() -> Picture:
 
 
 def tidal_field() -> Picture:
-    """Draw a long satellite on its orbit, and beside it the tidal force on its parts and the torque that follows."""
+    """Draw a long satellite on its orbit, with the tidal forces on its ends and the torque that they cause."""
     picture, plane = Picture(), Plane(100)
     planet = Plane(100, (-215.0, 40.0))
     picture.area(planet, 0.42 * np.stack([np.cos(TURN), np.sin(TURN)], axis=1), "fill-green")
@@ -277,7 +284,11 @@ def _satellite(picture: Picture, plane: Plane, place: Floats, half: float) -> No
 
 
 def tidal_force(offset: Floats, radius: Floats) -> Floats:
-    """Return the tidal force on a unit mass at an offset, by the derivative of the inverse square of the distance."""
+    """Return the tidal force on a unit mass, to first order in its offset from the satellite's centre.
+
+    It is the derivative of the inverse-square attraction along the offset; ``radius`` is the vector from the attracting
+    centre.
+    """
     step = 1e-6
 
     def pull(place: Floats) -> Floats:

@@ -17,7 +17,7 @@ Points = ArrayLike | Sequence[Any]
 
 @dataclass(frozen=True)
 class View:
-    """Orthographic view of space: axis 3 of space is drawn upward.
+    """An orthographic view of space in which axis 3 points upward.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class View:
 
     @cached_property
     def axes(self) -> Floats:
-        """The directions right, up, and toward the eye, as rows of an orthogonal matrix."""
+        """The directions right, up, and toward the viewer, as rows of an orthogonal matrix."""
         a, e = np.radians(self.azimuth), np.radians(self.elevation)
         toward = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
         right = np.array([-np.sin(a), np.cos(a), 0.0])
@@ -44,30 +44,30 @@ class View:
 
     @property
     def toward(self) -> Floats:
-        """The unit vector toward the eye."""
+        """The unit vector from the origin toward the viewer."""
         eye: Floats = self.axes[2]
         return eye
 
     def project(self, points: Points) -> Floats:
-        """Return the places of points of shape (n, 3) in the picture, shape (n, 2)."""
+        """Return the positions in the picture, shape (n, 2), of points in space, shape (n, 3)."""
         right, up, _ = self.axes @ np.atleast_2d(np.asarray(points, dtype=float)).T
         return np.stack([self.origin[0] + self.scale * right, self.origin[1] - self.scale * up], axis=1)
 
     def at(self, x: float, y: float) -> "View":
-        """Return the same view with its origin at another place of the picture."""
+        """Return the same view with its origin at the picture position (x, y)."""
         return replace(self, origin=(x, y))
 
 
 @dataclass(frozen=True)
 class Plane:
-    """View of a plane: x to the right, y upward, each with a scale of its own."""
+    """A view of a plane, with x to the right and y upward, each with its own scale."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)
     scale_y: float | None = None
 
     def project(self, points: Points) -> Floats:
-        """Return the places of points of shape (n, 2) in the picture, shape (n, 2)."""
+        """Return the positions in the picture, shape (n, 2), of points of the plane, shape (n, 2)."""
         x, y = np.atleast_2d(np.asarray(points, dtype=float)).T
         scale_y = self.scale if self.scale_y is None else self.scale_y
         return np.stack([self.origin[0] + self.scale * x, self.origin[1] - scale_y * y], axis=1)

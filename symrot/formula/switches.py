@@ -109,7 +109,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return the form that the first wrong condition in a formula should have; an empty text if there is none."""
+    """Return a text that says how to write the first wrong condition in a formula; empty if all are right."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -269,7 +269,10 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a part of a ``where`` as a smooth formula; its switches matter only if ``share`` equals ``value``."""
+        """Return the value part of a ``where`` as a smooth formula.
+
+        Its switches affect the motion only if the formula ``share`` equals ``value``.
+        """
         outside = self.conditions
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)

@@ -84,7 +84,7 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return the map of a shape, with the numbers in ``known`` for some dimensions and symbols for the others.
+    """Return the map of a shape; the dimensions in ``known`` are numbers in it, all other dimensions are symbols.
 
     The keys of ``known`` are names from :func:`symrot.inertia.shapes.scalar_names`.
     """

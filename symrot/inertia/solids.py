@@ -35,6 +35,7 @@ from sympy import (
     tan,
 )
 
+import symrot
 from symrot import symbols
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
@@ -64,7 +65,7 @@ class Integral:
     value: Expr
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solid:
     """The mass properties of a body of one shape, symbolic, in the axes of the shape.
 
@@ -97,6 +98,12 @@ class Solid:
     mass: Expr
     center_of_mass: ImmutableMatrix
     inertia: ImmutableMatrix
+
+    def __repr__(self) -> str:
+        return f"<Solid {self.name}: mass {self.mass}, moments about its centre {list(self.inertia.diagonal())}>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def shape(self) -> Shape:

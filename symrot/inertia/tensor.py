@@ -136,6 +136,7 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
     inertia : 3x3, kg m^2
         The tensor about the centre of mass.
     mass : number, kg
+        The mass of the body.
     offset : 3-vector, m
         The vector from the point to the centre of mass, or its negative.
 

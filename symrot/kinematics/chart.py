@@ -115,7 +115,9 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     Parameters
     ----------
     equation : Expr
+        The expression whose zeros are computed.
     variable : Symbol
+        The variable; all other symbols are constants.
     domain : Set
         The reals, or the half line from zero.
     """
@@ -201,9 +203,11 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     frame : str
         ``"body"`` or ``"space"``: the components of omega.
     parameters : tuple of Expr
+        The parameters p, such as Euler angles in rad.
     inverse : ImmutableMatrix
         ``dp/dt = inverse * omega``, 1/s for omega in rad/s.
     determinant : Expr
+        The determinant of B, or of B with the gradient of the constraint as a fourth row.
     singular_set : SingularSet
         Zeros of the determinant, solved for exactly.
     condition_number : Expr
@@ -306,7 +310,9 @@ class Chart:
     Attributes
     ----------
     name : str
+        The name of the description, such as ``"mrp"``.
     parameters : tuple of Symbol
+        The symbols of the parameters, in order.
     relations : tuple of Expr
         Expressions that are zero for every valid set of parameters, such as ``|q|^2 - 1``; proofs assume them.
     dcm : ImmutableMatrix, shape (3, 3)

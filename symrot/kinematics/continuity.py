@@ -34,6 +34,7 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     angles : array, shape (n, ..., 3)
         Angles in rad, in order of application, sampled so closely that no angle changes by pi/2 between samples.
     sequence : str
+        The Euler sequence of the angles, such as ``"ZXZ"``.
     locked : bool array, shape (n, ...), optional
         Whether each sample is in gimbal lock, as returned together with the angles. Such a sample gets the third angle
         of the last sample that is not locked, and the first angle that gives the same attitude.

@@ -357,6 +357,7 @@ def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
     Parameters
     ----------
     q : array, shape (..., 4)
+        Quaternions of any norm, scalar first.
     shadow : bool
         Each attitude has two sets, one from q and one from -q. If True, return the shorter set, of length at most 1. If
         False, return the set from q itself, which grows without bound toward q = (-1, 0, 0, 0), where it is NaN.
@@ -433,6 +434,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     sequence : str
         Euler sequence: intrinsic in upper case, extrinsic in lower case.
     degrees : bool
+        Whether the angles are returned in degrees instead of rad.
     lock : float
         Distance of the middle angle from gimbal lock, rad, up to which a sample counts as locked.
 

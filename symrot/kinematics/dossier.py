@@ -10,6 +10,7 @@ from functools import cache
 
 from sympy import Expr, ImmutableMatrix, Matrix, S, Set, factor_terms
 
+import symrot
 from symrot import symbols
 from symrot.conventions import SEQUENCES, parse_sequence
 from symrot.kinematics.chart import Limit, SingularSet
@@ -49,13 +50,14 @@ class LockedPoint:
         return first - third * self.silent_rates[0] / self.silent_rates[2]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SingularityDossier:
     """The singularities of an Euler sequence: where gimbal lock occurs, the lost axis there, and regular sequences.
 
     Attributes
     ----------
     sequence : str
+        The Euler sequence, such as ``"ZXZ"``.
     jacobian_b, jacobian_s : EulerRateMatrix
         B of ``omega = B dq/dt`` in body and space components.
     locked : tuple of LockedPoint
@@ -128,6 +130,12 @@ class SingularityDossier:
 
     __str__ = text
 
+    def __repr__(self) -> str:
+        return f"<SingularityDossier of {self.sequence}>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
+
     def _locked_text(self, point: LockedPoint) -> Iterable[str]:
         middle = self.singular_set.variable
         yield ""
@@ -186,7 +194,7 @@ def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
 
 @cache
 def singularity_dossier(sequence: str) -> SingularityDossier:
-    """Return where an Euler sequence has gimbal lock, the axes lost there, and the sequences that are regular there.
+    """Return the singularities of an Euler sequence: gimbal lock, the lost axes, and sequences regular there.
 
     Parameters
     ----------

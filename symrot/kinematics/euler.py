@@ -176,6 +176,7 @@ class EulerRateMatrix(RateMatrix):
     Attributes
     ----------
     sequence : str
+        The Euler sequence, such as ``"ZXZ"``.
     regular_sequences : tuple of str
         The other sequences that are regular at every attitude where this sequence locks.
 

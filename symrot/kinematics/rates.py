@@ -57,6 +57,7 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     omega : array, shape (..., 3)
         Angular velocity in rad/s, components in ``frame``.
     sequence : str
+        The Euler sequence of the angles, such as ``"ZXZ"``.
     frame : str
         ``"body"`` or ``"space"``.
 

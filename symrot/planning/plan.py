@@ -12,6 +12,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+import symrot
 from symrot.dynamics.structure import Pattern, Structure
 from symrot.errors import InputError
 from symrot.planning.general_structure import constants_of, general_structure, switching_function
@@ -23,7 +24,8 @@ from symrot.planning.rules import (
     pattern,
     small_components,
 )
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["START_CONSTANTS", "STATES", "Plan", "make_plan", "structure_key"]
 
@@ -33,7 +35,7 @@ START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}"
 STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Plan:
     """The smallest set of equations that gives the output of a scene, and the values of the constants in them.
 
@@ -56,6 +58,13 @@ class Plan:
     scene: Scene
     structure: Structure
     rows: tuple[RuleOutcome, ...]
+
+    def __repr__(self) -> str:
+        skipped = sum(row.skipped for row in self.rows)
+        return f"<Plan of {self.scene.name}: {len(self.states)} states, {skipped} of {len(self.rows)} rules apply>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:

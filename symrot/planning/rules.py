@@ -23,7 +23,8 @@ from symrot.dynamics.structure import (
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import NEGLIGIBLE, equal
 from symrot.planning.general_structure import MOMENTS, PRODUCTS
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 from symrot.scene.torque import Torque
 
 __all__ = [

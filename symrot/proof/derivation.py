@@ -25,6 +25,7 @@ from sympy import (
     sympify,
 )
 
+import symrot
 from symrot.errors import SymrotError
 from symrot.exact.decide import decide, is_zero, normal_form
 from symrot.exact.decision import Decision
@@ -48,7 +49,7 @@ class ProofError(SymrotError):
     """
 
 
-@dataclass
+@dataclass(repr=False)
 class PrintedPage(Page):
     """Page of a derivation with methods that print the page; the fields are those of the class ``Page``."""
 
@@ -64,6 +65,13 @@ class PrintedPage(Page):
         """Return the page as one HTML file with native MathML, which needs no network."""
         return html_document(self)
 
+    def __repr__(self) -> str:
+        count = f"{len(self.steps)} step{'s' * (len(self.steps) != 1)}"
+        return f"<{type(self).__name__} {self.name}: {self.title}, {count}>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
+
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
         """Return a page with one step, counted from 1.
 
@@ -78,7 +86,7 @@ class PrintedPage(Page):
         return PrintedPage(**{each.name: getattr(page, each.name) for each in fields(page)})
 
 
-@dataclass
+@dataclass(repr=False)
 class Derivation(PrintedPage):
     """Derivation of a result, built like a page of a textbook: every step is proven when it is added.
 

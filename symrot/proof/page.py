@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 from sympy import Expr
 
+import symrot
+
 __all__ = ["Drawing", "Figure", "Page", "Passage", "Section", "Step"]
 
 
@@ -25,7 +27,7 @@ class Passage:
     equations: tuple[tuple[Any, Any], ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Step:
     """Proven relation on a page: ``left = right``, or ``left > 0``.
 
@@ -75,6 +77,12 @@ class Step:
     source: str = ""
     via: tuple[tuple[str, Any, Any], ...] = ()
     printed: tuple[bool, bool] = (True, True)
+
+    def __repr__(self) -> str:
+        return f"<Step: {self.claim}>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
 
 
 class Drawing(Protocol):

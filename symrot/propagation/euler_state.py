@@ -51,7 +51,7 @@ NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the Euler sequence to use near gimbal lock of the given one: same first two axes, another third axis.
+    """Return the Euler sequence to use near gimbal lock of a given sequence; only its third axis differs.
 
     Each sequence is singular where a certain entry of the attitude matrix is 1 or -1. The entries of the two sequences
     lie in the same row (extrinsic: column), so that their squares add up to at most 1. Where one sequence is singular,

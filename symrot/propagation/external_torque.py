@@ -34,7 +34,8 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["ExternallyDrivenPropagator"]
 
@@ -293,7 +294,7 @@ def _address(pointer: Any) -> int:
 @final
 @dataclass(frozen=True, eq=False)
 class ExternalSetup:
-    """Everything that motions under one torque without a formula have in common, whatever their initial states.
+    """The data that all motions under one torque without a formula share, whatever their initial states.
 
     Attributes
     ----------
@@ -323,7 +324,7 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Return what all motions under a torque without a formula have in common.
+    """Return the data that all motions under a torque without a formula share.
 
     Kernel, torque and stepper are compiled into one library.
     """

@@ -34,7 +34,7 @@ from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording, Stats
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations
@@ -76,7 +76,7 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """What all motions of one plan have in common, whatever their initial states: method, kernel, numbers of the scene.
+    """The data that all motions of one plan share, whatever their initial states: method, kernel, numbers of the scene.
 
     Attributes
     ----------
@@ -156,7 +156,7 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """What all motions of one plan integrated in C have in common: the setup, and the library of kernel and stepper."""
+    """The data that all motions of one plan integrated in C share: the setup, and the library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
@@ -188,7 +188,7 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """What all motions of one plan in closed form have in common: the setup and the kind of closed form."""
+    """The data that all motions of one plan in closed form share: the setup and the kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form

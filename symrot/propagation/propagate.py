@@ -1,7 +1,7 @@
 """The functions propagator() and propagate(), which check the options and choose the class of propagator."""
 
+from collections.abc import Mapping
 from math import inf
-from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -12,16 +12,20 @@ from symrot.planning.general_structure import switched
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 
 __all__ = ["propagate", "propagator"]
 
 
 def propagator(
-    scene: Scene | str | Path,
+    scene: SceneSource,
     method: str = "auto",
     tolerance: float | None = None,
     *,
+    omega: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    attitude: Any = None,
+    parameters: Mapping[str, Any] | None = None,
     torque: Any = None,
     switching_times: ArrayLike = (),
     torque_frame: str = "body",
@@ -35,13 +39,22 @@ def propagator(
 
     Parameters
     ----------
-    scene : Scene, str or Path
-        A scene, the name of a shipped scene, or the path of a scene file.
+    scene : Scene, mapping, str or Path
+        A scene, the content of a scene file as a dict, the name of a shipped scene, or the path of a scene file.
     method : str
         One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
     tolerance : float, optional
         Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity;
         default: the tolerance of the scene.
+    omega : array, shape (3,), optional
+        Initial angular velocity, body components, rad/s; default: the value in the scene.
+    quaternion : array, shape (4,), optional
+        Initial attitude, scalar first; it is normalised. Default: the value in the scene.
+    attitude : optional
+        Initial attitude in any form of :meth:`symrot.Scene.with_`, instead of ``quaternion``: a rotation of SciPy, a
+        matrix ``dcm_sb``, a pair such as ``("ZXZ", [0.1, 0.2, 0.3])``.
+    parameters : mapping, optional
+        Other values of constants, by the names of :meth:`symrot.Scene.with_`, such as ``{"weight": 2}``.
     torque : optional
         An additional torque, N m, without a formula: a function of (t, omega, quaternion) that returns three numbers;
         a C function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3],
@@ -87,8 +100,7 @@ def propagator(
     >>> propagator([0.0, 1.0, 2.0]).omega.shape
     (3, 3)
     """
-    if not isinstance(scene, Scene):
-        scene = load_scene(scene)
+    scene = _with_values(load_scene(scene), omega, quaternion, attitude, parameters)
     aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
     if scene.table is not None:
         if torque is not None:
@@ -125,6 +137,21 @@ def propagator(
     return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
 
 
+def _with_values(
+    scene: Scene,
+    omega: ArrayLike | None,
+    quaternion: ArrayLike | None,
+    attitude: Any,
+    parameters: Mapping[str, Any] | None,
+) -> Scene:
+    """Return the scene with another initial state and other constants; None means the value in the scene."""
+    if quaternion is not None and attitude is not None:
+        raise InputError(f"attitude: expected attitude or quaternion, got both, {number.show(attitude)}")
+    start = {"omega": omega, "attitude": attitude if quaternion is None else {"quaternion": quaternion}}
+    changes = {key: value for key, value in start.items() if value is not None}
+    return scene if parameters is None and not changes else scene.with_(parameters, **changes)
+
+
 def _longest_step(max_step: float) -> float:
     longest = float(real_array(max_step, "max_step", "a positive number of seconds"))
     if not longest > 0.0:
@@ -133,7 +160,7 @@ def _longest_step(max_step: float) -> float:
 
 
 def _tolerance(tolerance: float) -> float:
-    from symrot.scene.scene import TOLERANCES
+    from symrot.scene.tables import TOLERANCES
 
     low, high = TOLERANCES
     value = float(number.read(tolerance, "tolerance"))
@@ -143,20 +170,35 @@ def _tolerance(tolerance: float) -> float:
 
 
 def propagate(
-    scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
+    scene: SceneSource,
+    method: str = "auto",
+    tolerance: float | None = None,
+    events: Any = None,
+    *,
+    t: ArrayLike | None = None,
+    omega: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    attitude: Any = None,
+    parameters: Mapping[str, Any] | None = None,
+    torque: Any = None,
+    switching_times: ArrayLike = (),
+    torque_frame: str = "body",
+    state: str = "quaternion",
+    switching: bool = True,
+    max_step: float = inf,
 ) -> Trajectory:
-    """Return the motion of a scene at the sample times of the scene.
+    """Return the motion of a scene.
 
     Parameters
     ----------
-    scene : Scene, str or Path
-        A scene, the name of a shipped scene, or the path of a scene file.
-    method : str
+    scene, method, tolerance
         As for :func:`propagator`.
-    tolerance : float, optional
-        Error of the trajectory to aim for; default: the tolerance of the scene.
     events : sequence, optional
         Formulas whose zeros are located, as for :class:`Propagator`: ``["omega_3 == 0"]``.
+    t : array, shape (n,), optional
+        Sample times in s, in any order; default: the sample times of the scene.
+    omega, quaternion, attitude, parameters, torque, switching_times, torque_frame, state, switching, max_step
+        As for :func:`propagator`.
 
     Returns
     -------
@@ -181,5 +223,21 @@ def propagate(
     >>> import symrot
     >>> symrot.propagate("t_handle", events=["omega_3 == 0"]).t_events[0][:2].round(8).tolist()
     [1.18541555, 3.55624666]
+    >>> symrot.propagate("t_handle", t=[0, 1], attitude=("ZXZ", [0, "pi/2", 0])).quaternion.shape
+    (2, 4)
     """
-    return propagator(scene, method, tolerance)(events=events)
+    return propagator(
+        scene,
+        method,
+        tolerance,
+        omega=omega,
+        quaternion=quaternion,
+        attitude=attitude,
+        parameters=parameters,
+        torque=torque,
+        switching_times=switching_times,
+        torque_frame=torque_frame,
+        state=state,
+        switching=switching,
+        max_step=max_step,
+    )(t, events=events)

@@ -1,15 +1,17 @@
 """The propagator of a scene: it chooses a method and prepares the kernel once, then computes any number of motions."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
+from copy import copy
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
 from time import perf_counter
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan, structure_key
@@ -20,7 +22,10 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
 from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.attitude import read_attitude
+from symrot.scene.content import plain
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["Propagator", "read_start"]
 
@@ -40,6 +45,7 @@ class Propagator:
     Attributes
     ----------
     scene : Scene
+        The scene whose motion is computed.
     tolerance : float
         Error of the trajectory to aim for.
 
@@ -54,6 +60,12 @@ class Propagator:
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion  # noqa: B018
+
+    def __repr__(self) -> str:
+        return f"<Propagator of {self.scene.name}: method {self._method}, tolerance {self.tolerance:g}>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the scene and the options: a copy prepares its motion from them and from the cache, on first use."""
@@ -129,6 +141,8 @@ class Propagator:
         *,
         omega: ArrayLike | None = None,
         quaternion: ArrayLike | None = None,
+        attitude: Any = None,
+        parameters: Mapping[str, Any] | None = None,
         events: Any = None,
     ) -> Trajectory:
         """Return the motion at the times ``t``.
@@ -141,6 +155,12 @@ class Propagator:
             Initial angular velocity, body components, rad/s; default: the value in the scene.
         quaternion : array, shape (4,), optional
             Initial attitude, scalar first; it is normalised. Default: the value in the scene.
+        attitude : optional
+            Initial attitude in any form of :meth:`symrot.Scene.with_`, instead of ``quaternion``: a rotation of SciPy,
+            a matrix ``dcm_sb``, a pair such as ``("ZXZ", [0.1, 0.2, 0.3])``.
+        parameters : mapping, optional
+            Other values of constants, by the names of :meth:`symrot.Scene.with_`, such as ``{"weight": 2}``. Use
+            :func:`symrot.propagate_ensemble` for many values at once.
         events : sequence, optional
             Formulas whose zeros are located, each as text, as a :class:`symrot.propagation.events.events.Event`, or as
             a mapping with the fields of an Event. The times are ``t_events`` of the trajectory; at a terminal event the
@@ -153,11 +173,15 @@ class Propagator:
         PropagationError
             If the motion cannot be followed to the last time; ``trajectory`` of the error holds the samples before.
         """
+        if parameters is not None:
+            return self._of(self.scene.with_(parameters))(
+                t, omega=omega, quaternion=quaternion, attitude=attitude, events=events
+            )
         times = self.sample_times if t is None else _times(t)
         in_order = _in_order(times)
         motion = self._motion
-        if omega is not None or quaternion is not None:
-            motion = self.motion_from(read_start(self.scene, omega, quaternion))
+        if omega is not None or quaternion is not None or attitude is not None:
+            motion = self.motion_from(read_start(self.scene, omega, quaternion, attitude))
         setup, began = motion.setup, perf_counter()
         try:
             if events is not None:
@@ -166,6 +190,12 @@ class Propagator:
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._with_samples(error, motion, times, began) from None
         return Trajectory(motion, times, states, setup.choice.method, stats, setup.message, propagator=self)
+
+    def _of(self, scene: Scene) -> Self:
+        """Return a propagator of another scene with the same options."""
+        other = copy(self)
+        other.scene = scene
+        return other
 
     def _with_events(self, motion: Motion, times: Floats, events: Any) -> Trajectory:
         from symrot.propagation.events.event_result import integrate_with_events
@@ -263,12 +293,16 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
     return tuple(components)
 
 
-def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
+def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, attitude: Any = None) -> Initial:
     """Return the initial state for a call of a propagator, in exact numbers.
 
     For an argument that is None, the value in the scene is used.
     """
     initial = scene.initial
+    if attitude is not None:
+        if quaternion is not None:
+            raise InputError(f"attitude: expected attitude or quaternion, got both, {number.show(attitude)}")
+        initial = initial._replace(quaternion=read_attitude(plain(attitude, "attitude"), "attitude").quaternion)
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
         initial = initial._replace(omega_b=(x, y, z))

@@ -18,7 +18,8 @@ from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
 from symrot.results.samples import MotionSamples
-from symrot.scene.scene import Initial, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
 
 __all__ = ["Invariant", "Trajectory"]
 
@@ -61,7 +62,7 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """A propagator, as far as a trajectory needs it."""
+    """Interface of the propagator to which a trajectory refers: it returns motions from other initial states."""
 
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from an initial state."""
@@ -149,7 +150,7 @@ class Trajectory(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to its last sample time or to a terminal event."""
+        """Whether the motion was computed up to its last sample time or to a terminal event."""
         return self.status >= 0
 
     @property
@@ -202,8 +203,8 @@ class Trajectory(MotionSamples):
     def quaternion(self) -> Floats:
         """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
-        if isinstance(self._parts, tuple):
-            return conversions.normalize(self._parts[1])
+        if isinstance(self._parts, tuple):  # of a closed form: rounded from a unit quaternion
+            return self._parts[1].copy()
         return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 from symrot.dynamics.structure import Structure
 from symrot.planning.plan import Plan
 from symrot.report.layout import apart, columns, one_line, room
-from symrot.scene.scene import QUANTITIES
+from symrot.scene.tables import QUANTITIES
 
 if TYPE_CHECKING:
     from symrot.report.records import PlanReport, PlanRow
 
-__all__ = ["explanation", "facts", "lines"]
+__all__ = ["KERNEL", "explanation", "facts", "lines"]
+
+KERNEL = "deriving the kernel"
+"""The row that says whether the cache has the kernel."""
 
 HEAD = ("item", "", "rule", "derivation", "operations", "saved")
 FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or multiplication
@@ -65,7 +68,7 @@ def _others(plan: Plan) -> "list[PlanRow]":
         *_formulas(plan, choice.method),
         _row("outputs asked for", False, ", ".join(asked)),
         *([_row("other outputs", True, f"not asked for: {', '.join(missing)}")] if missing else []),
-        _row("deriving the kernel", known, kernel),
+        _row(KERNEL, known, kernel),
     ]
 
 

@@ -207,6 +207,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
         from matplotlib import pyplot
 
         ax = pyplot.subplots()[1]
+    if getattr(ax, "name", "") == "3d":
+        raise InputError("ax: expected axes in the plane, got axes in space; leave out projection='3d'")
     if panel in ON_SPHERES:
         ON_SPHERES[panel](ax, trajectory)
         return ax

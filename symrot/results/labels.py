@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.errors import InputError
-from symrot.scene.scene import QUANTITIES, Output
+from symrot.scene.tables import QUANTITIES, Output
 
 __all__ = ["LOCK", "About", "Labelled", "about", "labelled"]
 

@@ -189,7 +189,9 @@ class MotionSamples(Samples):
         if name == "euler":
             output = self.scene.output
             if output.sequence is None:
-                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
+                raise InputError(
+                    'euler: expected an Euler sequence, such as "ZXZ", as output.sequence of the scene, got none'
+                )
             return self.euler(output.sequence, degrees=output.degrees)
         value: Floats = getattr(self, name)
         return value

@@ -75,7 +75,7 @@ class SavedTrajectory(Samples):
     def quantity(self, name: str) -> Floats:
         """Return a quantity in the file by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
         if name not in self._items:
-            raise InputError(f"{name}: expected a file with this quantity, got one with {', '.join(self._items)}")
+            raise InputError(f"{name}: expected a file with this quantity, got a file with {', '.join(self._items)}")
         values: Floats = self._items[name].values
         return values
 
@@ -91,17 +91,17 @@ class SavedTrajectory(Samples):
 
     @property
     def method(self) -> str:
-        """The method that followed the motion."""
+        """The name of the method that computed the motion, such as ``"taylor"``."""
         return self._about.method
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to its last sample time or to a terminal event."""
+        """Whether the motion was computed up to its last sample time or to a terminal event."""
         return bool(self.metadata["status"] >= 0)
 
     @property
     def t_events(self) -> list[Floats]:
-        """For each event its times, s."""
+        """The times of each event, s: one array for each event."""
         return [samples.t for samples in self.at_events]
 
     @property

@@ -74,7 +74,7 @@ def dataframe(items: Sequence[Labelled], origin: About) -> Any:
 
 
 def _lead(items: Sequence[Labelled]) -> tuple[int, ...]:
-    """Return the shape of the samples: (m,) for one motion, (n, m) for n motions."""
+    """Return the leading dimensions of all arrays: (m,) for m samples of one motion, (n, m) for n motions."""
     if len(items) < 2:
         return items[0].values.shape
     item = items[1]

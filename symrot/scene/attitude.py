@@ -224,9 +224,25 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 }
 
 
+def _by_shape(value: Any) -> Any:
+    """Return the table that a list stands for: four numbers, three rows, or a sequence with its angles in rad."""
+    match value:
+        case [str(sequence), list() as angles]:
+            return {"sequence": sequence, "angles": angles}
+        case [list(), list(), list()]:
+            return {"dcm": value}
+        case [_, _, _, _]:
+            return {"quaternion": value}
+    return value
+
+
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that a table of a scene describes: quaternion, Euler angles, axis and angle, or matrix."""
-    entries = table(value, where, f"an attitude: {FORMS}")
+    """Return the attitude that a scene describes: quaternion, Euler angles, axis and angle, or matrix.
+
+    The value is a table, or one of the lists ``[q0, q1, q2, q3]``, ``[[..], [..], [..]]`` (the rows of ``dcm_sb``) and
+    ``["ZXZ", [.., .., ..]]`` (angles in rad).
+    """
+    entries = table(_by_shape(value), where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:
         fail(where, f"an attitude: {FORMS}", value)

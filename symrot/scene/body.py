@@ -23,6 +23,9 @@ __all__ = ["Body", "read_body"]
 ABOUT = ("center_of_mass", "fixed_point")
 INERTIA_SOURCES = ("shape", "part", "principal", "inertia")
 EXPECTED_SOURCE = "exactly one of shape, [[body.part]], principal, inertia"
+ASYMMETRY = Fraction(1, 10**12)
+"""Largest difference of I_xy and I_yx, relative to the largest moment, of a tensor that counts as symmetric."""
+
 LARGEST_MOMENT = Fraction(10) ** 120
 MOST_PARTS = 1000
 LONGEST_DENSITY = 400
@@ -138,7 +141,29 @@ def _three_moments(value: Any, where: str) -> tuple[Fraction, ...]:
     return tuple(_moment(item, f"{where}[{index}]") for index, item in enumerate(value))
 
 
+_entry = number("an entry of an inertia tensor in kg m^2")
+
+
+def _rows_of_tensor(value: Any, where: str) -> Matrix:
+    """Return an inertia tensor given by three rows; products that differ by rounding are replaced by their mean."""
+    if len(value) != 3 or not all(isinstance(row, list | tuple) and len(row) == 3 for row in value):
+        fail(where, "three rows of three numbers in kg m^2, products with their minus sign", value)
+    rows = [[_entry(item, f"{where}[{i}][{j}]") for j, item in enumerate(row)] for i, row in enumerate(value)]
+    limit = max(abs(rows[i][i]) for i in range(3)) * ASYMMETRY
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        if abs(rows[i][j] - rows[j][i]) > limit:
+            pair = [float(rows[i][j]), float(rows[j][i])]
+            fail(f"{where}[{i}][{j}]", f"a symmetric tensor, the same number as in [{j}][{i}]", pair)
+        rows[i][j] = rows[j][i] = (rows[i][j] + rows[j][i]) / 2
+    for i in range(3):
+        _moment(value[i][i], f"{where}[{i}][{i}]")
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = rows
+    return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+
+
 def _tensor(value: Any, where: str) -> Matrix:
+    if isinstance(value, list | tuple):
+        return _rows_of_tensor(value, where)
     zero = Fraction(0)
     i = read_table(value, where, {
         **{key: Entry(_moment, required=True) for key in ("xx", "yy", "zz")},

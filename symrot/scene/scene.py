@@ -3,118 +3,32 @@
 All numbers are exact. This module does not use SymPy.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import symrot
 from symrot.dynamics.torque_kinds import TABLE_KIND
-from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
-from symrot.scene.body import Body, read_body
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
+from symrot.scene.body import Body
+from symrot.scene.changes import changed, replaces_shapes
+from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
-from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, table, text, vector
+from symrot.scene.reader import fail, read_table, table
 from symrot.scene.samples import Table, read_samples
+from symrot.scene.tables import SCHEMA, TOP, Initial, Output, Span
 from symrot.scene.torque import Torque, read_torque
 
-__all__ = [
-    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene",
-    "shipped_scenes",
-]  # fmt: skip
+__all__ = ["Scene", "SceneSource", "load_scene", "shipped_scenes"]
 
-SCHEMA = 1
-MOST_SAMPLES = 10_000_000
 MOST_TORQUES = 100
-TOLERANCES = (Fraction(1, 10**15), Fraction(1, 100))
-
-QUANTITIES: dict[str, tuple[str, str]] = {
-    "omega": ("rad/s", "angular velocity, body components"),
-    "omega_space": ("rad/s", "angular velocity, space components"),
-    "quaternion": ("1", "attitude (q0, q1, q2, q3), scalar first, body to space"),
-    "euler": ("rad", "Euler angles of the given sequence"),
-    "dcm": ("1", "direction cosine matrix dcm_sb, row by row"),
-    "energy": ("J", "energy: kinetic, and potential where the torques have one"),
-    "kinetic_energy": ("J", "kinetic energy"),
-    "angular_momentum_body": ("kg m^2/s", "angular momentum, body components"),
-    "angular_momentum_space": ("kg m^2/s", "angular momentum, space components"),
-    "polhode": ("rad/s", "path of the angular velocity in the body, on the energy ellipsoid"),
-    "herpolhode": ("rad/s", "path of the angular velocity in space, on the invariable plane"),
-    "axis": ("1", "symmetry axis of the body (its third axis when it has none), space components"),
-}
-"""Output quantities that a scene may request: name -> (unit, meaning)."""
 
 
-class Initial(NamedTuple):
-    """Initial state of a motion: angular velocity and attitude, as exact fractions.
-
-    Attributes
-    ----------
-    omega_b : tuple of 3 Fraction
-        Angular velocity, body components, rad/s.
-    quaternion : tuple of 4 Fraction
-        Attitude, scalar first, body to space; its norm differs from 1 by at most 2^-200.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> scene = symrot.load_scene("tumbling_prism")
-    >>> scene.initial.quaternion[0]
-    Fraction(1, 1)
-    """
-
-    omega_b: Vector
-    quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
-
-
-class Span(NamedTuple):
-    """The sample times of a scene, evenly spaced.
-
-    Attributes
-    ----------
-    start, stop : Fraction
-        First and last time, s.
-    samples : int
-        Number of times, including the first and the last one.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> scene = symrot.load_scene("tumbling_prism")
-    >>> scene.span.start
-    Fraction(0, 1)
-    """
-
-    start: Fraction
-    stop: Fraction
-    samples: int
-
-
-class Output(NamedTuple):
-    """The quantities in the output of a scene, and the sequence and unit of its Euler angles.
-
-    Attributes
-    ----------
-    quantities : tuple of str
-        Names among :data:`symrot.scene.scene.QUANTITIES`.
-    sequence : str or None
-        Euler sequence of the quantity ``"euler"``.
-    degrees : bool
-        Whether the Euler angles are in degrees instead of rad.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> scene = symrot.load_scene("tumbling_prism")
-    >>> "omega" in scene.output.quantities
-    True
-    """
-
-    quantities: tuple[str, ...]
-    sequence: str | None
-    degrees: bool
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """A rigid body, its initial state, the torques on it, and the requested output. All numbers are exact.
 
@@ -158,6 +72,13 @@ class Scene:
     output: Output
     tolerance: Fraction
     table: Table | None = None  # a torque given by samples, in addition to the torques given by formulas
+    origin: "_Origin | None" = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {self.title}, {float(self.span.start):g} to {float(self.span.stop):g} s>"
+
+    def _repr_html_(self) -> str:
+        return symrot.in_notebook(self)
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
@@ -186,16 +107,189 @@ class Scene:
         InputError
             If the content is not a valid scene; the message names key, expectation and value.
         """
-        return _read_scene(content, where, where, None, table_folders)
+        return _read_scene(plain(content, where), where, where, None, table_folders)
+
+    @classmethod
+    def build(cls, *, name: str = "scene", **tables: Any) -> "Scene":
+        """Return the scene with the given tables; each keyword argument is a table or key of a scene file.
+
+        Parameters
+        ----------
+        name : str
+            Short name of the scene.
+        **tables
+            ``body``, ``initial`` and ``span``, and optionally ``torque`` (a list), ``output``, ``accuracy``, ``title``
+            and ``source``, with the content of ``docs/scene_format.md``. Vectors and tensors may be NumPy arrays, and
+            an attitude may be a rotation of SciPy.
+
+        Raises
+        ------
+        InputError
+            If a table is missing, unknown or not valid; the message names key, expectation and value.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> scene = symrot.Scene.build(
+        ...     body={"shape": "box", "a": 0.2, "b": 0.13, "c": 0.03, "mass": 0.5},
+        ...     initial={"omega": [0.05, 8, 0.02]},
+        ...     span={"t": [0, 10]},
+        ... )
+        >>> scene.body.mass
+        Fraction(1, 2)
+        """
+        return cls.from_dict({"schema": SCHEMA, **tables}, name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of the scene file or dict from which the scene was read, with all changes since then.
+
+        The result is a copy; ``Scene.from_dict`` reads it as an equal scene.
+
+        Raises
+        ------
+        InputError
+            If the body or the torques were replaced by :func:`dataclasses.replace`, which does not change the content.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.load_scene("t_handle").with_(omega=[0, 1, 0]).to_dict()["initial"]["omega"]
+        [0, 1, 0]
+        """
+        return deepcopy(self._content())
+
+    def to_toml(self) -> str:
+        """Return the scene as the text of a scene file; all numbers keep their exact values.
+
+        Raises
+        ------
+        InputError
+            As for :meth:`to_dict`.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> text = symrot.load_scene("t_handle").with_(samples=11).to_toml()
+        >>> "samples = 11" in text
+        True
+        """
+        return toml_text(self._content())
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **values: Any) -> "Scene":
+        """Return the scene with other values; everything that follows from them is computed again.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Key -> value. A key is a path in the scene file, such as ``"body.mass"``, ``"torque[0].weight"`` or
+            ``"initial"``, or a short name:
+
+            - ``omega`` (rad/s, body components), ``omega_2``, ``omega_space``;
+            - ``attitude``: a quaternion, scalar first, a 3x3 matrix ``dcm_sb``, a rotation of SciPy, a pair such as
+              ``("ZXZ", [0.1, 0.2, 0.3])``, or a table;
+            - ``t`` ([start, stop], s), ``samples``, ``tolerance``, ``quantities``;
+            - ``principal`` and ``I_xx`` to ``I_yz``, kg m^2;
+            - the constants of torques, as in :func:`symrot.propagate_ensemble`;
+            - the mass, density and dimensions of a body that is one shape.
+        **values
+            More keys, where the key is a Python name: ``scene.with_(omega=[0, 1, 0], weight=2)``.
+
+        Raises
+        ------
+        InputError
+            If a key names nothing in the scene, or if the new scene is not valid.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> scene = symrot.load_scene("tumbling_prism")
+        >>> scene.with_({"body.mass": 2}, omega_3="1/3").initial.omega_b[2]
+        Fraction(1, 3)
+        """
+        if changes is not None and not isinstance(changes, Mapping):
+            raise InputError(f"expected a dict of new values by name, got {show(changes)}")
+        every = {**(changes or {}), **values}
+        last = {key: value for key, value in every.items() if replaces_shapes(key)}
+        first = {key: value for key, value in every.items() if key not in last}
+        shaped = self._changed(first) if first or not last else self
+        return shaped._changed(last) if last else shaped
+
+    def _changed(self, changes: Mapping[str, Any]) -> "Scene":
+        content = changed(self._content(), changes, self.initial.omega_b, self.body, self.torques)
+        assert self.origin is not None
+        return _read_scene(content, self.origin.label, self.name, self.path, self.origin.table_folders)
+
+    def _content(self) -> Content:
+        """Return the content of the scene; raise InputError if its body or torques were replaced after it was read."""
+        if self.origin is None or not all(
+            one is other for one, other in zip(self.origin.parts, _parts(self), strict=True)
+        ):
+            raise InputError(
+                f"{self.name}: expected a scene with the body and torques that were read, got one in which they were "
+                "replaced afterwards; write scene.with_(...) instead of dataclasses.replace"
+            )
+        first = self.origin.scene_values
+        replaced = {key: _WRITERS[key](now) for key, now in _values(self).items() if now is not first[key]}
+        return {**self.origin.content, **replaced}
 
 
-def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
-    """Return a shipped scene by its name, or a scene from the path of a TOML file.
+class _Origin(NamedTuple):
+    """The content from which a scene was read, and the objects that were read, to notice if one is replaced later."""
+
+    content: Content
+    label: str
+    table_folders: str | Path | Sequence[str | Path]
+    parts: tuple[Any, ...]
+    scene_values: Mapping[str, Any]
+
+    def has_parts_of(self, scene: Scene) -> bool:
+        """Return whether a scene still has the body and the torques that were read from its content."""
+        return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
+
+
+def _parts(scene: Scene) -> tuple[Any, ...]:
+    """Return the body and the torques of a scene, for each of which scene files have several notations."""
+    return scene.body, scene.torques, scene.table
+
+
+def _values(scene: Scene) -> dict[str, Any]:
+    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file."""
+    return {
+        "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
+        "output": scene.output, "accuracy": scene.tolerance,
+    }  # fmt: skip
+
+
+def _output_content(output: Output) -> Content:
+    euler = {"sequence": output.sequence, "degrees": output.degrees} if "euler" in output.quantities else {}
+    return {"quantities": list(output.quantities), **euler}
+
+
+_WRITERS: dict[str, Callable[[Any], Any]] = {
+    "title": str,
+    "source": str,
+    "initial": lambda initial: {
+        "omega": list(initial.omega_b), "attitude": {"quaternion": list(initial.quaternion)},
+    },
+    "span": lambda span: {"t": [span.start, span.stop], "samples": span.samples},
+    "output": _output_content,
+    "accuracy": lambda tolerance: {"tolerance": tolerance},
+}  # fmt: skip
+"""Key of a table -> function that writes it from the value of the scene."""
+
+
+SceneSource = Scene | Mapping[str, Any] | str | Path
+"""What every function accepts as a scene: a scene, the content of a file as a dict, a shipped name, or a path."""
+
+
+def load_scene(source: SceneSource, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
+    """Return a shipped scene by its name, a scene from the path of a TOML file, or one from a dict.
 
     Parameters
     ----------
-    source : str or Path
-        Name of a shipped scene, or path of a file.
+    source : str, Path, mapping or Scene
+        Name of a shipped scene, path of a file, or the content of a file as for :meth:`Scene.from_dict`. A scene is
+        returned unchanged.
     table_folders : str, Path or sequence of them
         Folders, in addition to the folder of the scene, whose files a torque of kind table may name.
 
@@ -218,6 +312,10 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     >>> load_scene("tumbling_prism").body.principal.moments
     (Fraction(5, 1), Fraction(20, 1), Fraction(17, 1))
     """
+    if isinstance(source, Scene):
+        return source
+    if isinstance(source, Mapping):
+        return Scene.from_dict(source, table_folders=table_folders)
     path = find_scene(source)
     label = path.name if path.parent == SHIPPED else str(source)
     return _read_scene(read_toml(path, label), label, path.stem, str(path), table_folders)
@@ -241,119 +339,6 @@ def shipped_scenes() -> list[tuple[str, str, str]]:
     """
     contents = [(name, read_toml(SHIPPED / f"{name}.toml", name)) for name in shipped_names()]
     return [(name, content.get("title", ""), content.get("source", "")) for name, content in contents]
-
-
-# --- the readers of each table ----------------------------------------------------------------------------------------
-
-
-def _schema(value: Any, where: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value != SCHEMA:
-        fail(where, f"{SCHEMA}, the format this symrot reads", value)
-    return SCHEMA
-
-
-def _read_initial(value: Any, where: str) -> Initial:
-    entries = {"omega": Entry(vector("rad/s")), "omega_space": Entry(vector("rad/s")), "attitude": Entry(read_attitude)}
-    values = read_table(value, where, entries, "the initial state")
-    present = [key for key in ("omega", "omega_space") if values[key] is not None]
-    if len(present) != 1:
-        expectation = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
-        both = {key: value[key] for key in present}
-        fail(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
-    attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
-    omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
-    return Initial(omega_b, attitude.quaternion)
-
-
-def _samples(value: Any, where: str) -> int:
-    expectation = f"a whole number of samples from 2 to {MOST_SAMPLES}"
-    count = number(expectation)(value, where)
-    if count.denominator != 1 or not 2 <= count <= MOST_SAMPLES:
-        fail(where, expectation, value)
-    return int(count)
-
-
-_time = number("a time in s")
-
-
-def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        fail(where, "the first and the last time, [start, stop] in s", value)
-    start, stop = (_time(item, f"{where}[{index}]") for index, item in enumerate(value))
-    if float(start) == float(stop):
-        fail(where, "a span of positive length, [start, stop] in s", value)
-    if start > stop:
-        fail(where, "start before stop", value, "a scene runs forward; in Python, a propagator takes times in any "
-                 "order")  # fmt: skip
-    return start, stop
-
-
-def _read_span(value: Any, where: str) -> Span:
-    entries = {"t": Entry(_times, required=True), "samples": Entry(_samples, default=1001)}
-    values = read_table(value, where, entries, "a span")
-    start, stop = values["t"]
-    return Span(start, stop, values["samples"])
-
-
-_quantity = choice(*QUANTITIES)
-
-
-def _quantities(value: Any, where: str) -> tuple[str, ...]:
-    if not isinstance(value, list | tuple) or not value:
-        fail(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
-    names = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            fail(f"{where}[{index}]", "each quantity once", name)
-    return names
-
-
-def _read_output(value: Any, where: str) -> Output:
-    values = read_table(value, where, {
-        "quantities": Entry(_quantities, default=("omega", "quaternion")),
-        "sequence": Entry(read_sequence),
-        "degrees": Entry(flag, default=False),
-    }, "the output")  # fmt: skip
-    if "euler" in values["quantities"] and values["sequence"] is None:
-        fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
-    for key in ("sequence", "degrees"):
-        if "euler" not in values["quantities"] and key in value:
-            fail(f"{where}.{key}", "euler among the quantities, since nothing else uses this key", value[key])
-    return Output(values["quantities"], values["sequence"], values["degrees"])
-
-
-def _read_tolerance(value: Any, where: str) -> Fraction:
-    tolerance: Fraction = number("a tolerance")(value, where)
-    smallest, largest = TOLERANCES
-    if not smallest <= tolerance <= largest:
-        reason = "it is a relative error" if tolerance <= 0 else "a double carries no more digits"
-        reason = "errors above it make a motion meaningless" if tolerance > largest else reason
-        fail(where, "a tolerance from 1e-15 to 1e-2", value, reason)
-    return tolerance
-
-
-def _read_accuracy(value: Any, where: str) -> Fraction:
-    values = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
-    tolerance: Fraction = values["tolerance"]
-    return tolerance
-
-
-def _unchanged(value: Any, where: str) -> Any:
-    return value
-
-
-TOP: dict[str, Entry] = {
-    "schema": Entry(_schema, required=True),
-    "title": Entry(text, default=""),
-    "source": Entry(text, default=""),
-    "body": Entry(read_body, required=True),
-    "initial": Entry(_read_initial, required=True),
-    "torque": Entry(_unchanged, default=()),
-    "span": Entry(_read_span, required=True),
-    "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
-    "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
-}
-"""The tables and keys of a scene file; torques are read last, since some of their values may come from the body."""
 
 
 def _read_torques(
@@ -387,7 +372,7 @@ def _read_scene(
     torques, samples = _read_torques(
         values["torque"], values["body"], values["span"], folder, f"{where}torque", table_folders
     )
-    return Scene(
+    scene = Scene(
         name=name,
         path=path,
         title=values["title"] or name.replace("_", " "),
@@ -400,3 +385,4 @@ def _read_scene(
         tolerance=values["accuracy"],
         table=samples,
     )
+    return replace(scene, origin=_Origin(dict(content), label, table_folders, _parts(scene), _values(scene)))

@@ -113,7 +113,7 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Return one component of a torque as the text of a formula; in the scene it is a formula or a number."""
+    """Return one component of a torque as formula text; the scene gives it as a formula or as a number."""
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:

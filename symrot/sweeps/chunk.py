@@ -18,7 +18,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.scene.scene import Scene
 from symrot.sweeps.design import Design, Draws
 from symrot.sweeps.outputs import SweepOutput, evaluate, sample_times
-from symrot.sweeps.targets import OMEGA, Content, Path, constants_of, with_values
+from symrot.sweeps.targets import OMEGA, Content, Path, constants_of
 
 __all__ = ["COMPLETE", "IMPOSSIBLE", "STOPPED", "Chunk", "Job", "compute", "prepared"]
 
@@ -38,7 +38,6 @@ class Job:
     design: Design
     scene: Scene
     content: Content | None
-    table_folders: tuple[str, ...]
     times: Floats  # (m,), s
     outputs: tuple[SweepOutput, ...]
     method: str
@@ -135,13 +134,13 @@ Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quat
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
     """Return the function from values at some paths to the constants of the scene, or to the reason why it has none."""
-    content = dict(job.content or {})
+    names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
     @lru_cache(maxsize=MOST_READINGS)
     def read(values: tuple[float, ...]) -> Reading | str:
-        changed = with_values(content, dict(zip(paths, values, strict=True)))
+        changes = {names[path]: value for path, value in zip(paths, values, strict=True)}
         try:
-            scene = Scene.from_dict(changed, "scene", table_folders=job.table_folders)
+            scene = job.scene.with_(changes)
             variation = read_variation(scene, None, None, None)
             numbers = [float(variation.constant(name)) for name in constants]
         except InputError as error:

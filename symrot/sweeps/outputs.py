@@ -16,7 +16,8 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
 from symrot.results.labels import COMPONENTS, FRAMES
 from symrot.scene.reader import nearest
-from symrot.scene.scene import QUANTITIES, Output, Scene
+from symrot.scene.scene import Scene
+from symrot.scene.tables import QUANTITIES, Output
 
 __all__ = ["AT_TIMES", "REDUCTIONS", "SweepOutput", "evaluate", "read_outputs", "sample_times", "scene_for"]
 

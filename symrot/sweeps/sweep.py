@@ -14,9 +14,8 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import make_plan
 from symrot.propagation.method import choose_method
-from symrot.scene.file import SHIPPED, find_scene, read_toml
 from symrot.scene.reader import nearest
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import read_design
@@ -120,7 +119,7 @@ class Sweep:
 
 
 def sweep(
-    scene: Scene | str | Path | Content,
+    scene: SceneSource,
     vary: Mapping[str, object] | None = None,
     *,
     attitudes: str = "scene",
@@ -273,13 +272,13 @@ def _target(path: str | Path, keep: str) -> Path:
 
 
 def _job(
-    scene: Scene | str | Path | Content, vary: Mapping[str, object], attitudes: str, sampling: str, count: object,
+    scene: SceneSource, vary: Mapping[str, object], attitudes: str, sampling: str, count: object,
     seed: object, texts: Sequence[str], t: ArrayLike | None, method: str, tolerance: float | None,
     folders: Sequence[str | Path],
 ) -> Job:  # fmt: skip
     """Return the job that the arguments of a sweep describe."""
-    own, content = _scene(scene, folders)
-    own = scene_for(own, texts)
+    own = scene_for(load_scene(scene, table_folders=folders), texts)
+    content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
     design = read_design(own, content, vary, attitudes, sampling, count, seed)
     times = read_times(t, own, 1)
@@ -288,21 +287,16 @@ def _job(
     if method not in ("auto", "exact"):
         choose_method(make_plan(own), method)  # raises an error that lists the methods
     aim = float(own.tolerance) if tolerance is None else read_tolerance(tolerance)
-    home = Path(own.path).parent if own.path else Path()
-    all_folders = tuple(str(Path(folder).resolve()) for folder in (home, *folders))
     outputs = read_outputs(texts, own, np.sort(times))
-    return prepared(Job(design, own, content, all_folders, np.sort(times), outputs, method, aim))
+    return prepared(Job(design, own, content, np.sort(times), outputs, method, aim))
 
 
-def _scene(scene: Scene | str | Path | Content, folders: Sequence[str | Path]) -> tuple[Scene, Content | None]:
-    """Return a scene, and the content of its file if there is one."""
-    if isinstance(scene, Scene):
-        return scene, None
-    if isinstance(scene, Mapping):
-        return Scene.from_dict(scene, "scene", table_folders=folders), scene
-    own = load_scene(scene, table_folders=folders)
-    path = find_scene(scene)
-    return own, read_toml(path, path.name if path.parent == SHIPPED else str(scene))
+def _content(scene: Scene) -> Content | None:
+    """Return the content from which a scene was read; None if its parts were replaced later."""
+    try:
+        return scene.to_dict()
+    except InputError:  # only values of its constants can vary
+        return None
 
 
 def _result(store: Store, path: Path | None) -> Sweep:

@@ -18,7 +18,7 @@ from symrot.formula.exact_numbers import read, show
 from symrot.scene.reader import nearest
 from symrot.scene.scene import Scene
 
-__all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target", "with_values"]
+__all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
 
 OMEGA = ("omega_1", "omega_2", "omega_3")
 VARIED_TABLES = ("body", "initial", "torque")
@@ -141,21 +141,6 @@ def _numbers_in(content: Content) -> list[str]:
         return [] if isinstance(value, bool | str) else [place]
 
     return [path for key in VARIED_TABLES if key in content for path in walk(content[key], key)]
-
-
-def with_values(content: Content, values: Mapping[Path, float]) -> dict[str, Any]:
-    """Return a copy of the content of a scene file with other numbers at some paths."""
-
-    def replaced(node: Any, place: Path) -> Any:
-        if place in values:
-            return values[place]
-        if isinstance(node, Mapping):
-            return {key: replaced(item, (*place, key)) for key, item in node.items()}
-        if isinstance(node, list | tuple):
-            return [replaced(item, (*place, k)) for k, item in enumerate(node)]
-        return node
-
-    return {key: replaced(item, (key,)) if key in VARIED_TABLES else item for key, item in content.items()}
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:

@@ -1,4 +1,4 @@
-"""The surface of a scene's body, as patches of points: the faces of its parts, drawn from the maps of their shapes.
+"""The surface of a scene's body as patches: grids of points computed from the maps that define its shapes.
 
 A shape is the image of a box of coordinates (:mod:`symrot.inertia.shapes`). Its surface is the image of the box's
 faces, so no shape needs a drawing of its own. A body of which only the inertia is known is drawn as the uniform box
@@ -49,7 +49,7 @@ class Patch(NamedTuple):
 
 
 def patches(body: Body) -> list[Patch]:
-    """Return the surface of a body, in m, in body axes, from the point of rotation.
+    """Return the surface of a body as patches of points, m, in body axes, relative to the point of rotation.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def patches(body: Body) -> list[Patch]:
 
 
 def how_drawn(body: Body) -> str:
-    """Return one sentence about the picture of a body of which only the inertia is known; empty for a body of parts."""
+    """Return a sentence that a body is drawn as a box, if only its inertia is known; otherwise an empty text."""
     if body.parts:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
@@ -137,7 +137,7 @@ def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...
 
 
 def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mapping[str, list[float]]) -> bool:
-    """Return whether a face has shrunk to a line or a point, as the axis of a cylinder has: radius 0."""
+    """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0."""
     inside = {name: grid[0] + INSIDE * (grid[-1] - grid[0]) for name, grid in grids.items()}
 
     def point(**moved: float) -> list[float]:
@@ -149,7 +149,7 @@ def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mappi
 
 
 def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
-    """Return the values of a coordinate at which a surface is sampled: its ends, and places between if it curves."""
+    """Return the values of a coordinate at which a surface is sampled: both ends, and more if the surface is curved."""
     low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
     count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1
     return [low + (high - low) * k / count for k in range(count + 1)]
@@ -176,7 +176,10 @@ def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
 
 
 def _equivalent_box(body: Body) -> list[Patch]:
-    """Return the faces of the uniform box with the moments of a body; its size does not depend on the unknown mass."""
+    """Return the faces of the uniform box that has the moments of a body.
+
+    Its size does not depend on the mass, which is unknown.
+    """
     central = _about_its_center(body)
     principal, mass, center = central or (body.principal, None, (0.0, 0.0, 0.0))
     moments = [float(moment) for moment in principal.moments]

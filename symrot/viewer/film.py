@@ -1,4 +1,4 @@
-"""Films of a motion, GIF or MP4: matplotlib draws frames from the dense motion, Pillow or ffmpeg encodes them."""
+"""Films of a motion as GIF or MP4: matplotlib draws the frames, Pillow or ffmpeg encodes them."""
 
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
@@ -34,7 +34,7 @@ VIEW = {"elev": 22.0, "azim": -52.0}
 
 
 def require_encoder(path: Path) -> None:
-    """Raise InputError if what draws or encodes a film is not installed."""
+    """Raise InputError if a package that draws or encodes films is not installed."""
     if find_spec("matplotlib") is None:
         raise InputError(f"{path}: expected matplotlib, but it is not installed; pip install 'symrot[film]'")
     if path.suffix.lower() == ".mp4" and find_spec("imageio_ffmpeg") is None:
@@ -44,7 +44,7 @@ def require_encoder(path: Path) -> None:
 def write_film(
     trajectory: Trajectory, path: Path, progress: Callable[[int, int], object] = lambda done, all: None
 ) -> None:
-    """Write the motion of a trajectory as a film.
+    """Write a film of a trajectory's motion to a GIF or MP4 file.
 
     Parameters
     ----------
@@ -135,7 +135,10 @@ def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
 
 
 def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float) -> None:
-    """Draw the body, the axes of space, and the path of the body's axis up to a part of the motion."""
+    """Draw one frame: the body, the axes of space, and the path of the body's axis.
+
+    ``part`` is the fraction of the motion up to this frame; the path up to it is drawn in a strong colour.
+    """
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -156,7 +159,7 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
 
 
 def _polygons(patch: Patch) -> list[Floats]:
-    """Return the quadrilaterals of a patch, each of shape (4, 3); curves and points have none."""
+    """Return the quadrilaterals of a patch, each of shape (4, 3); an empty list for curves and separate points."""
     if patch.rows < 2 or patch.is_hole:
         return []
     grid = np.array(patch.points).reshape(patch.rows, patch.columns, 3)
@@ -168,12 +171,15 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return a curve as one list of points, and separate points as lists of one."""
+    """Return the points of a curve as one list, or separate points as lists of one point each."""
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness of a quadrilateral: its quarter of a round patch, so that a spin can be seen."""
+    """Return the brightness of a quadrilateral.
+
+    The quarters of a round surface differ in brightness, so that its spin can be seen.
+    """
     across = max(patch.columns, patch.rows) - 1
     column = place % (patch.columns - 1) if patch.columns > 2 else place // max(patch.columns - 1, 1)
     return 0.72 if int(4 * column / max(across, 1)) % 2 else 0.95

@@ -1,4 +1,4 @@
-"""The model of a scene in a page: kernels as JavaScript, constants that can be varied, the body and a reference.
+"""The content of a scene's page: kernels as JavaScript, adjustable constants, the body, and reference samples.
 
 The kernels are derived for the scene with all constants free, because the page changes them: its equations are more
 general than the plan of the scene, and the same for all values.
@@ -49,7 +49,7 @@ MOMENTS = ("A", "B", "C")
 
 
 class Slider(NamedTuple):
-    """A constant or initial value that a page can change: its name in the page, label, unit, value and range."""
+    """A constant or initial value that the reader of a page can change: its name, label, unit, value and range."""
 
     name: str
     label: str
@@ -61,7 +61,7 @@ class Slider(NamedTuple):
 
 @dataclass(frozen=True)
 class PageModel:
-    """Everything that a page shows and computes.
+    """The content of a page: JavaScript functions, and numbers and texts as data.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class PageModel:
 
 
 def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
-    """Return the model of a scene for a page.
+    """Return the content of the page of a scene.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def _free_structure(scene: Scene) -> Any:
 
 
 def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
-    """Return the texts and numbers that every page needs; ``is_driven`` says whether a torque without formula acts."""
+    """Return the data that every page needs, by name; ``is_driven`` says whether a torque without formula acts."""
     body = scene.body
     principal = body.principal
     axis = 2 if principal.symmetry_axis is None else principal.symmetry_axis
@@ -193,12 +193,12 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
 
 
 def _rest(value: Fraction) -> float:
-    """Return what the nearest double lacks of an exact number, so that both together have 32 digits."""
+    """Return the difference of an exact number from its nearest double; both doubles together have 32 digits."""
     return float(value - Fraction(float(value)))
 
 
 def _patch(patch: Patch, size: float) -> dict[str, Any]:
-    """Return a patch for JSON; its points are relative to the size of the body."""
+    """Return a patch of the body's surface as data for JSON; its points are divided by the size of the body."""
     points = [round(component / size, DIGITS) + 0.0 for point in patch.points for component in point]
     return {"points": points, "rows": patch.rows, "columns": patch.columns, "hole": patch.is_hole}
 
@@ -213,9 +213,9 @@ def _packed(values: Floats) -> str:
 
 
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
-    """Return a motion as evenly spaced samples of omega and quaternion, dense enough to be drawn.
+    """Return a motion as evenly spaced samples of omega and quaternion, close enough to be drawn.
 
-    Of a motion with too many rotations for a page, the first part is taken, and the reason says so.
+    If the motion has too many rotations for a page, only its first part is returned, and ``played`` says so.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
@@ -240,7 +240,7 @@ def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
 
 
 def _reference(times: Floats, states: Floats) -> dict[str, str]:
-    """Return states of symrot's own motion, with which the page compares the motion that it shows."""
+    """Return times and states computed by symrot, with which the page compares its own results."""
     return {"t": _packed(times), "y": _packed(states)}
 
 
@@ -259,7 +259,7 @@ def _tableau() -> dict[str, Any]:
 
 
 def _angle_kernels(sequence: str) -> dict[str, Program]:
-    """Return the kernels between Euler angles and quaternions, by their names in a page."""
+    """Return the kernels that convert between Euler angles and quaternions, by their names in the page."""
     from symrot.codegen.library_kernels import kernel_program
 
     angles = f"euler_{'' if sequence.isupper() else 'extrinsic_'}{sequence.lower()}"
@@ -288,7 +288,7 @@ def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -
 
 
 def _script(programs: Mapping[str, Program], facts: Mapping[str, Any] = MappingProxyType({})) -> str:
-    """Return JavaScript that defines ``kernel``, an object with functions and facts by name."""
+    """Return JavaScript that defines ``kernel``, an object with the functions of the programs and with other values."""
     lines = js_functions(*programs.values())
     for program in programs.values():
         lines += [*js_function(program), ""]
@@ -314,9 +314,10 @@ def _binding(name: str, parameters: Parameters, constants: Iterable[str]) -> Pro
 
 
 def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
-    """Return what a page can change: initial rates, moments of inertia, and constants of the torques.
+    """Return the sliders of a page: for initial rates, moments of inertia, and constants of the torques.
 
-    Components of a unit vector and entries of a full inertia tensor are left out: they cannot change one by one.
+    Components of a unit vector and entries of a full inertia tensor have no sliders, because they cannot change one by
+    one.
     """
     rates = [float(value) for value in scene.initial.omega_b]
     fastest = max(map(abs, rates)) or 1.0
@@ -341,7 +342,7 @@ def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
 
 
 def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
-    """Yield the constants of the torques that can be changed one by one: their names, and their fields."""
+    """Yield (name, field) for each constant of the torques that can be changed alone."""
     for torque in plan.structure.torques:
         fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}
         for name, pattern in getattr(torque, "fields", ()):

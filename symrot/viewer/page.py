@@ -1,4 +1,4 @@
-"""The text of a page: one offline HTML file that holds its script, style and numbers; nothing is fetched."""
+"""The HTML text of a page: one file that contains its script, style and numbers, and needs no network."""
 
 import json
 import re
@@ -20,7 +20,9 @@ LIBRARIES = "libraries.js"
 
 
 def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
-    """Return a scene as a page of HTML that computes and shows its motion; the same scene gives the same bytes.
+    """Return the HTML text of a page that computes and shows the motion of a scene.
+
+    The same scene gives the same bytes.
 
     Parameters
     ----------
@@ -60,10 +62,10 @@ def _text(name: str) -> str:
 
 
 def _in_script(text: str) -> str:
-    """Return JSON that cannot end the script element in which it is written, whatever a title contains."""
+    """Return JSON text in which no title can end the HTML script element that contains the text."""
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
 def _without_modules(text: str) -> str:
-    """Return the text of a JavaScript module without the word export, so that several can share one script."""
+    """Return a JavaScript module without ``export``, so that several modules can share one script element."""
     return re.sub(r"^export (?=class|const|function)", "", text, flags=re.MULTILINE)

@@ -10,22 +10,25 @@ from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.scene import Initial, Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import Initial
 from symrot.viewer import film
 from symrot.viewer.model import with_attitude
 from symrot.viewer.page import page
 
-__all__ = ["PAGES", "in_notebook", "show"]
+__all__ = ["PAGES", "in_frame", "show"]
 
 PAGES = (".html", ".htm")
 
 
 def show(
-    motion: Scene | Trajectory | str | Path,
+    motion: SceneSource | Trajectory,
     path: str | Path | None = None,
     progress: Callable[[int, int], object] = lambda done, all: None,
 ) -> Path:
-    """Write a motion as one offline page of HTML that computes it, plays it and lets readers change it; or as a film.
+    """Write a motion as one offline HTML page that computes and plays it, or as a film.
+
+    Readers can change the motion in the page.
 
     Parameters
     ----------
@@ -73,44 +76,25 @@ def show(
     return target
 
 
-def in_notebook(trajectory: Trajectory) -> str:
-    """Return the HTML that shows a trajectory in a notebook: its page, in a frame of its own.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A motion; a notebook calls this function through ``Trajectory._repr_html_``.
-
-    Returns
-    -------
-    str
-        An ``iframe`` that holds the whole page.
-
-    Raises
-    ------
-    InputError
-        For a trajectory without attitude under a torque without a formula.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> symrot.in_notebook(symrot.propagate("t_handle")).startswith("<iframe")
-    True
-    """
+def in_frame(trajectory: Trajectory) -> str:
+    """Return the HTML that shows a trajectory in a notebook: an ``iframe`` that holds its whole page."""
     text = escape(page(*_scene_and_motion(trajectory)), quote=True)
     return f'<iframe srcdoc="{text}" style="width:100%;height:760px;border:0" title="motion"></iframe>'
 
 
 def _state_at(scene: Scene, time: Fraction) -> Initial:
-    """Return the state of a scene's motion at a time, from which a page begins."""
+    """Return the state of a scene's motion at a given time, s: the initial state of a page that starts then."""
     state = propagator(with_attitude(scene))([float(time)])
     first, second, third = map(Fraction, state.omega[0].tolist())
     a, b, c, d = map(Fraction, state.quaternion[0].tolist())
     return Initial((first, second, third), (a, b, c, d))
 
 
-def _scene_and_motion(motion: Scene | Trajectory | str | Path) -> tuple[Scene, Trajectory | None]:
-    """Return the scene of a page, and the trajectory if the page must play it because its torque has no formula."""
+def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
+    """Return the scene of a page, and the trajectory to play if the page cannot compute it, else None.
+
+    A page plays a trajectory if a torque without a formula acts.
+    """
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))
         if start == stop:

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import symrot
 from symrot.errors import InputError
 from symrot.planning.general_structure import switched
 from symrot.planning.plan import Plan, make_plan
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 
 if TYPE_CHECKING:
     from symrot.workshop.kernel_text import KernelText
@@ -58,6 +58,12 @@ class Emitted(_Texts):
         emitted.text, emitted.bounds = text, bounds
         return emitted
 
+    def __repr__(self) -> str:
+        return f"<Emitted {self.name}: {self.source.count(chr(10))} lines>"
+
+    def _repr_markdown_(self) -> str:
+        return symrot.in_notebook(self)
+
     @property
     def function(self) -> str:
         """The name of the C function for one sample in double precision."""
@@ -69,11 +75,11 @@ class Emitted(_Texts):
         return self.text.certificate(self.bounds)
 
 
-def _scene(source: Scene | str | Path) -> Scene:
+def _scene(source: SceneSource) -> Scene:
     return source if isinstance(source, Scene) else load_scene(source)
 
 
-def plan(scene: Scene | str | Path) -> Plan:
+def plan(scene: SceneSource) -> Plan:
     """Return the plan of a scene: each item that is computed or skipped, and why; :func:`explain` prints it as a table.
 
     Parameters
@@ -104,7 +110,7 @@ def plan(scene: Scene | str | Path) -> Plan:
     return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
 
 
-def explain(scene: Scene | str | Path) -> str:
+def explain(scene: SceneSource) -> str:
     """Return the plan of a scene as a table of text: item, computed or skipped, rule, derivation, operations saved.
 
     Parameters
@@ -132,7 +138,7 @@ def explain(scene: Scene | str | Path) -> str:
     return explanation(plan(scene))
 
 
-def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
+def emit(kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
     """Return the text of a library kernel, or of a scene's own kernel; it is the same on every machine.
 
     Parameters

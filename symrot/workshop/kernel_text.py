@@ -8,7 +8,6 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cache, cached_property
-from pathlib import Path
 from typing import Any, ClassVar
 
 from symrot.certificates.certificate import KernelUnderTest, certificate_text, with_sections
@@ -29,7 +28,7 @@ from symrot.formula.program import Program
 from symrot.kernels.library import definition, kernel_names
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 
 __all__ = ["SUFFIX", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
 
@@ -217,7 +216,7 @@ class SceneText(KernelText):
         return SceneInputs(arguments, values, self.scene.span[:2], formulas, constants)
 
 
-def kernel_text(kernel: KernelText | Scene | str | Path) -> KernelText:
+def kernel_text(kernel: KernelText | SceneSource) -> KernelText:
     """Return the texts of a kernel of the library, which is printed once per process, or of a scene."""
     if isinstance(kernel, KernelText):
         return kernel
@@ -229,7 +228,7 @@ def _library_text(name: str) -> LibraryText:
     return LibraryText(name)
 
 
-def scene_text(scene: Scene | str | Path) -> SceneText:
+def scene_text(scene: SceneSource) -> SceneText:
     """Return the texts of the kernel of a scene, of a shipped scene given by its name, or of a scene file."""
     return SceneText(scene if isinstance(scene, Scene) else load_scene(scene))
 

@@ -124,3 +124,27 @@ def test_an_angle_in_radians_is_noted():
     assert verdict.verdict == "true"
     assert any("the angle 45 is in radians" in note for note in verdict.notes)
     assert not any("in radians" in note for note in symrot.check("sin(1) = sin(1)").notes)
+
+
+@pytest.mark.parametrize(
+    "claim", ["asin(0.6) = 37°", "37° = asin(0.6)", "1500 rpm = 157 rad/s", "1 rad = 57°", "sqrt(200) m = 14 m"]
+)
+def test_a_whole_number_with_a_unit_may_be_the_rounding_of_an_irrational_value(claim):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true"
+    assert any(note.startswith("to the digits given") for note in verdict.notes)
+
+
+@pytest.mark.parametrize(("claim", "right"), [
+    ("arcsin 0.6 = 36°", "arcsin 0.6 = 37°"), ("1500 rpm = 158 rad/s", "1500 rpm = 157 rad/s"), ("1 rad = 58°", "1 rad = 57°"),
+])  # fmt: skip
+def test_a_wrong_whole_number_gets_the_right_one(claim, right):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.repairs[0].text) == ("false", right)
+
+
+@pytest.mark.parametrize(
+    "claim", ["60 rpm = 6 rad/s", "180° = 3 rad", "asin(0.5) = 31°", "sqrt(144) m = 13 m", "1 rad = 60°"]
+)
+def test_one_digit_a_last_zero_and_a_rational_value_leave_no_room_for_rounding(claim):
+    assert symrot.check(claim).verdict == "false"

@@ -20,7 +20,7 @@ from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia import principal
 from symrot.propagation.propagate import propagator
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 from tests.propagation.test_changed_start import BESIDE, GRAVITY, SCENES, scene
 
 RANDOM = np.random.default_rng(12)

@@ -97,7 +97,7 @@ def test_names_with_indices_may_have_braces_or_underscores():
 
 
 def test_answers_to_no_question_are_refused():
-    with pytest.raises(symrot.InputError, match="expected the questions a, b, got 'z'"):
+    with pytest.raises(symrot.InputError, match="expected names among the questions a, b, got 'z'"):
         symrot.grade(ROD, {"z": "1"})
 
 

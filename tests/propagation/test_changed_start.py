@@ -18,7 +18,8 @@ from symrot.planning.plan import make_plan, structure_key
 from symrot.propagation import compiled_models as kernels
 from symrot.propagation import motion, propagate, propagator
 from symrot.propagation.steppers import taylor
-from symrot.scene.scene import Initial, Scene, load_scene
+from symrot.scene.scene import Scene, load_scene
+from symrot.scene.tables import Initial
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 PRISM = load_scene("tumbling_prism")

@@ -94,7 +94,7 @@ def test_a_pickle_names_only_classes_of_symrot_and_of_numbers(method):
 
     propagator = PROPAGATORS[method]()
     Reader(io.BytesIO(pickle.dumps((propagator, propagator(TIMES))))).load()
-    assert named <= {"symrot", "numpy", "fractions"}
+    assert named <= {"symrot", "numpy", "fractions", "decimal"}
 
 
 def test_a_pickled_propagator_works_in_a_fresh_process_without_sympy(tmp_path):

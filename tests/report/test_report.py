@@ -75,7 +75,7 @@ def test_csv_reads_back_to_the_same_doubles(tmp_path, capsys):
 
 @pytest.mark.parametrize("suffix", ["npz", "csv"])
 def test_every_quantity_has_its_columns_and_files_are_the_same_twice(tmp_path, capsys, suffix):
-    from symrot.scene.scene import QUANTITIES
+    from symrot.scene.tables import QUANTITIES
 
     scene = _scene(tmp_path, list(QUANTITIES), 'sequence = "zyx"\n')
     for name in ("one", "two"):

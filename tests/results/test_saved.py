@@ -12,7 +12,7 @@ import pytest
 import symrot
 from symrot.cli.main import main
 from symrot.errors import InputError
-from symrot.scene.scene import QUANTITIES, Output
+from symrot.scene.tables import QUANTITIES, Output
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 EVENTS = ["omega_3 == 0", {"formula": "omega_1 - 100"}]
@@ -57,7 +57,7 @@ def test_quantities_that_follow_from_omega_and_attitude_are_computed(tmp_path):
     assert saved.dcm.tolist() == trajectory.dcm.tolist()
     assert saved.omega_space.tolist() == trajectory.omega_space.tolist()
     assert saved.euler("XYZ").tolist() == trajectory.euler("XYZ").tolist()
-    with pytest.raises(InputError, match="energy: expected a file with this quantity, got one with t, omega"):
+    with pytest.raises(InputError, match="energy: expected a file with this quantity, got a file with t, omega"):
         saved.quantity("energy")
     with pytest.raises(AttributeError, match="no quantity 'energy'; it has t, omega, quaternion"):
         _ = saved.energy

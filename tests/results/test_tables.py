@@ -9,7 +9,7 @@ import pytest
 
 import symrot
 from symrot.errors import InputError
-from symrot.scene.scene import QUANTITIES, Output
+from symrot.scene.tables import QUANTITIES, Output
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 TIMES = np.linspace(0.0, 2.0, 9)

@@ -18,7 +18,8 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal
 from symrot.scene.attitude import read_attitude, to_body, to_space
-from symrot.scene.scene import QUANTITIES, Scene, load_scene, shipped_scenes
+from symrot.scene.scene import Scene, load_scene, shipped_scenes
+from symrot.scene.tables import QUANTITIES
 
 ROUNDING = 4e-16  # two roundings of a component of a unit quaternion or a dcm
 SHIPPED = {

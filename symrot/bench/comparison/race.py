@@ -71,7 +71,7 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Time all runs alternately, and append the seconds to their entries.
+    """Time all runs alternately, and append the measured seconds to the :class:`Measured` entry of each run.
 
     ``turn`` is called with the number of a round before it begins.
     """

@@ -47,12 +47,15 @@ class CoqResult:
     Attributes
     ----------
     theorems : tuple of TheoremResult
+        The outcome of each theorem.
     axioms : tuple of str
         All axioms on which the theorems rest.
     problems : tuple of str
         One sentence for each refused file or theorem, with the line number and Coq's message.
     seconds : float
+        The time that all checks took.
     version : str
+        The version of Coq.
     """
 
     theorems: tuple[TheoremResult, ...]

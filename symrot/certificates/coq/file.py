@@ -38,10 +38,13 @@ class CoqFile:
     name : str
         The file's name without the suffix ``.v``.
     title : str
+        The title in the comment at the start of the file.
     requires : tuple of str
         The names of all files that this file needs directly or indirectly, in the order in which Coq must check them.
     definitions : tuple of str
+        The definitions of functions, as Coq text.
     theorems : tuple of Theorem
+        The theorems about these functions, in order.
     """
 
     name: str

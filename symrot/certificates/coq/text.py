@@ -134,6 +134,7 @@ def definition_text(kernel: Definition, name: str, output: str | None = None) ->
     Parameters
     ----------
     kernel : Definition
+        The kernel whose formulas are printed.
     name : str
         The name of the function in Coq.
     output : str, optional

@@ -59,6 +59,7 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
     name : str
         The name of the kernel, for error messages.
     law : Law
+        The law to prove.
     formulas : mapping of str to Expr
         A map from the name of a symbol to its formula.
 

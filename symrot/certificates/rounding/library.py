@@ -88,6 +88,7 @@ def prepare(
     Parameters
     ----------
     kernels : iterable of (name, C text)
+        The kernels whose outputs are bounded.
     workers : int
         Number of processes; with 1 the bounds are computed in this process.
     budget, libm_ulp

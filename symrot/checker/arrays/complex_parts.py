@@ -1,18 +1,28 @@
 """The real and imaginary parts of formulas such as ``exp(i*x)``, as trees: equal formulas have equal parts."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import reduce
-from itertools import permutations
+from itertools import permutations, repeat
 from typing import ClassVar
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError, complaint
 
-__all__ = ["imaginary_unit", "with_parts"]
+__all__ = ["imaginary_unit", "is_complex", "substituted", "with_parts"]
 
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)
 LETTERS = ("i", "j", "I")
+NUMBERS = ("z", "w", "zeta")
+"""Names that are usually complex numbers."""
+
+BAR = "_bar"
+"""Ending of the name of a conjugate."""
+
+OF_COMPLEX = ("real_part", "imaginary_part", "conjugate", "abs")
+"""Functions that a formula applies to complex numbers: the parts, the conjugate and the absolute value."""
+
 CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
 MOST_FACTORS = 16
 """The highest power of a complex number that is multiplied out."""
@@ -22,6 +32,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
 
     The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and cosines.
+    A letter i or j in a sum ``x + i*y`` is the imaginary unit if the formulas have a part, the conjugate or the
+    absolute value of a name or of a formula with this letter, or a name of a complex number, such as z.
     A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and
     its conjugate, or if they have circular and hyperbolic functions and it is inside one of these.
     """
@@ -52,7 +64,38 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
     )  # fmt: skip
     sums = [node for node in nodes if node.kind == "sum" and _letter_in(node, letter)]
     has_conjugates = any(_conjugate(node, letter) in sums for node in sums)
-    return own if (is_alone or has_both or has_conjugates) and len(functions & {"diff", "Matrix"}) == 0 else None
+    has_parts = any(map(_has_factor, sums, repeat(letter))) and (
+        bool(names & {*NUMBERS}) or any(map(_is_of_complex, nodes, repeat(letter)))
+    )
+    is_evident = is_alone or has_both or has_conjugates or has_parts
+    return own if is_evident and not functions & {"diff", "Matrix"} else None
+
+
+def _has_factor(node: Node, letter: str) -> bool:
+    """Return whether one term of a sum is the letter, or a product with it, and another term is neither."""
+    factors = [term.args if term.kind == "product" else (term,) for term in map(_without_sign, node.args)]
+    return len({any((f.kind, f.value) == ("name", letter) for f in own) for own in factors}) == 2
+
+
+def _without_sign(term: Node) -> Node:
+    return term.args[0] if term.kind == "neg" else term
+
+
+def _is_of_complex(node: Node, letter: str) -> bool:
+    """Return whether a formula is a part, the conjugate or the absolute value of a complex number."""
+    if node.kind == "name" and str(node.value).endswith(BAR):
+        return True
+    argument = node.args[0] if node.kind == "call" and node.value in OF_COMPLEX else None
+    return argument is not None and (argument.kind == "name" or _letter_in(argument, letter) is not None)
+
+
+def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
+    """Return a tree with the formulas of complex numbers in place of their names; ``z_bar`` is the conjugate of z."""
+    if tree.kind == "name" and tree.value in numbers:
+        return numbers[str(tree.value)]
+    if tree.kind == "name" and (name := str(tree.value).removesuffix(BAR)) in numbers:
+        return Node("call", "conjugate", (numbers[name],), tree.span)
+    return replace(tree, args=tuple(substituted(child, numbers) for child in tree.args))
 
 
 def _conjugate(node: Node, letter: str) -> Node:
@@ -79,10 +122,18 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
     return own[0] if own and others and sines else None
 
 
+def is_complex(sides: Sequence[Node], letter: str) -> bool:
+    """Return whether an equation has the imaginary unit, or a part or conjugate of a number."""
+    return any(
+        _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
+    )
+
+
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return an equation of two columns, each with the real and the imaginary part of one side.
 
-    A side that is a single name stays as it is, since such an equation only names the other side.
+    A side that is a single name stays as it is, since such an equation only names the other side, or says that its
+    imaginary part is zero.
 
     Raises
     ------
@@ -92,7 +143,7 @@ def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tu
     sign, *sides = relation
     split = _Splitter(letter, source)
     if any(side.kind == "name" and side.value != letter for side in sides):
-        left, right = (side if side.kind == "name" else _column(split.parts(side)) for side in sides)
+        left, right = (side if side.kind == "name" else _real_or_column(split.parts(side)) for side in sides)
         return sign, left, right
     left_parts, right_parts = (split.parts(side) for side in sides)
     return sign, _column(left_parts), _column(right_parts)
@@ -100,6 +151,10 @@ def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tu
 
 def _column(parts: Parts) -> Node:
     return Node("call", "Matrix", (Node("list", ("[", "]"), parts),))
+
+
+def _real_or_column(parts: Parts) -> Node:
+    return parts[0] if _is_zero(parts[1]) else _column(parts)
 
 
 def _is_zero(tree: Node) -> bool:
@@ -182,6 +237,18 @@ class _Splitter:
         ((a, b),) = inner
         return Node("call", "sqrt", (_plus(_square(a), _square(b)),)), ZERO
 
+    def real_part(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, _),) = inner
+        return a, ZERO
+
+    def imaginary_part(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((_, b),) = inner
+        return b, ZERO
+
+    def conjugate(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        ((a, b),) = inner
+        return a, negated(b)
+
     def sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
         ((a, b),) = inner
         return _of(_call("sin", a), _call("cosh", b)), _of(_call("cos", a), _call("sinh", b))
@@ -205,7 +272,8 @@ class _Splitter:
         return _times(self.hyperbolic_sine(node, inner), self.inverse(node, [self.hyperbolic_cosine(node, inner)]))
 
     rules: ClassVar[Mapping[str, Callable[["_Splitter", Node, Sequence[Parts]], Parts]]] = {
-        "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute, "sin": sine,
+        "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute,
+        "real_part": real_part, "imaginary_part": imaginary_part, "conjugate": conjugate, "sin": sine,
         "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
     """Kind of a formula, or the function that it calls -> the rule for its parts."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
-from symrot.checker.arrays.complex_parts import imaginary_unit, with_parts
+from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with_parts
 from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
@@ -354,7 +354,10 @@ def claim_of_relation(
     assume = [source for source in assume if matrices[source] is None]
     define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
     hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
-    if (unit := imaginary_unit([*relation[1:], *context])) is not None:
+    unit = imaginary_unit([*relation[1:], *context])
+    if unit is not None and not is_complex(relation[1:], str(unit.value)):
+        unit = None
+    if unit is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
     bold = bold_matrices(relation[1:], {vector.name for vector in vectors})

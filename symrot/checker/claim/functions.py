@@ -100,6 +100,12 @@ def _log(scope: Scope, node: Node) -> Expr:
     return sympy.log(value)
 
 
+def _part(scope: Scope, node: Node) -> Expr:
+    """Return the real part of a formula without the imaginary unit, or zero for its imaginary part."""
+    value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+    return value if node.value == "real_part" else sympy.S.Zero
+
+
 def _rotation(axis: str) -> Any:
     return lambda scope, node: elementary_rotation(axis, scope.scalar(node.args[0], "as an angle"))
 
@@ -374,6 +380,8 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "cosh": (1, 1, _of_scalar(sympy.cosh)),
     "tanh": (1, 1, _of_scalar(sympy.tanh)),
     "abs": (1, 1, _abs),
+    "real_part": (1, 1, _part),
+    "imaginary_part": (1, 1, _part),
     "diff": (2, 9, _diff),
     "integrate": (2, 9, _integrate),
     "integral_over_body": (1, 1, _integral_over_body),

@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from symrot.checker.arrays.complex_parts import imaginary_unit, substituted
 from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
-from symrot.checker.claim.reader import Reading
+from symrot.checker.claim.reader import Chain, Reading
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
@@ -33,17 +34,23 @@ def claims_of_reading(
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
     stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
+    numbers = _complex_numbers(reading.lines, context)
     for chain in reading.lines:
         links = chain.links
         if len(links) > 1 and set(chain.signs) != {"=="}:
             raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
         used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
         known = _needed(define, used)
+        known += [
+            item for item in numbers.items() if item[0] in used and item not in define and item[1] not in chain.sides
+        ]
         claims = []
         for link in links:
             in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
             own = {name: unit for name, unit in (units or {}).items() if name in in_link}
             vectors = [vector for vector in used_vectors(link[1:], reading.vectors) if vector.name not in dict(define)]
+            if numbers and not (link[1].kind == "name" and numbers.get(str(link[1].value)) == link[2]):
+                link = link[0], substituted(link[1], numbers), substituted(link[2], numbers)
             claim = claim_of_relation(link, source, assume, own, known, reading.notes, context, vectors)
             claims.append(replace(claim, context=stated))
         lines.append(claims)
@@ -53,6 +60,18 @@ def claims_of_reading(
         if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
     return lines
+
+
+def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
+    """Return the names that lines such as ``z = x + i*y`` define as complex numbers, each with its formula."""
+    unit = imaginary_unit(formulas)
+    if unit is None:
+        return {}
+    return {
+        str(chain.sides[0].value): chain.sides[1]
+        for chain in lines
+        if len(lines) > 1 and chain.sides[0].kind == "name" and unit.value in {n.value for _, n in walk(chain.sides[1])}
+    }
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:

@@ -56,7 +56,8 @@ class TypedNotation:
         """Return the text of a tree in this notation."""
         if not self.plain:
             return text(node)
-        return text(self._spelled(node)).replace("**", "^")
+        plain = text(self._spelled(node)).replace("**", "^")
+        return plain.replace("real_part(", "Re(").replace("imaginary_part(", "Im(")
 
     def _spelled(self, node: Node, parent: str = "") -> Node:
         """Return a tree whose names are spelled as they were typed, with primes for rates and ``[..]`` for matrices."""

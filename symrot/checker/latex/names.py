@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import Node, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, is_tensor
@@ -12,10 +13,11 @@ from symrot.latex import tree
 
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
-OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag"}
+OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part"}
 SPELLED = {
     "tr": "trace", "Tr": "trace", "Det": "det", "Diag": "diag", "Atan2": "atan2", "ATAN2": "atan2", "arctan2": "atan2",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "vers": "vers", "adj": "adjugate",
+    "Re": "real_part", "Im": "imaginary_part",
     **{name: name for name in BUILT_IN},
 }  # fmt: skip
 """Name in upright letters -> the function that it means."""
@@ -243,6 +245,8 @@ class NamesPart(SumsPart):
             if "tilde" in mark.text:
                 return Node("call", "skew", (inner,))
             return self.vector(str(inner.value).removesuffix(MARK) + NAME_MARKS[mark.text])
+        if mark.text == "\\overline" and tree.alone(mark.inside).kind not in ("letter", "number", "command"):
+            return Node("call", CONJUGATE, (self.under(mark, self.expression),))
         node = self.under(mark, lambda: self.symbol(NAME_MARKS[mark.text]))
         self.take_time_call(str(node.value))
         return node

@@ -18,6 +18,7 @@ __all__ = ["LatexNotation", "Writer", "latex_of", "latex_of_text"]
 COMMANDS = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "exp", "sinh", "cosh", "tanh", "det")},
     "asin": "\\arcsin", "acos": "\\arccos", "atan": "\\arctan", "log": "\\ln", "trace": "\\operatorname{tr}",
+    "real_part": "\\Re", "imaginary_part": "\\Im",
 }  # fmt: skip
 """Built-in function -> its command."""
 

@@ -11,7 +11,7 @@ from symrot.checker.claim.tree import Node, number, product
 from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, TIME
 from symrot.checker.typed.open_functions import OpenFunctionsPart
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
-from symrot.checker.typed.words import SINGLE_ARGUMENT
+from symrot.checker.typed.words import PARTS, SINGLE_ARGUMENT
 
 __all__ = ["PiecesPart"]
 
@@ -178,7 +178,7 @@ class PiecesPart(OpenFunctionsPart):
             return (
                 self.called(function, token) if self.peek() == "(" else Node("name", word, (), self.span(token.start))
             )
-        if word not in SINGLE_ARGUMENT:
+        if word not in SINGLE_ARGUMENT and not (function in PARTS and self.token().kind == "name"):
             return Node("name", word, (), self.span(token.start))
         return self.applied(function, token)
 

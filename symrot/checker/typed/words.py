@@ -12,6 +12,7 @@ from symrot.checker.typed.tokens import GREEK_WORDS, Token
 __all__ = [
     "ALIASES",
     "ENGLISH",
+    "PARTS",
     "SINGLE_ARGUMENT",
     "UNITS",
     "Shorthand",
@@ -33,11 +34,14 @@ ALIASES = {
     "ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "Abs": "abs", "Derivative": "diff",
     "Integral": "integrate", "ImmutableMatrix": "Matrix", "ImmutableDenseMatrix": "Matrix",
     "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
-    "Inverse": "inverse", "arctan2": "atan2",
+    "Inverse": "inverse", "arctan2": "atan2", "conj": "conjugate",
+    "Re": "real_part", "Im": "imaginary_part",
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
 """Other names of built-in functions -> the name in trees. Names that SymPy's own text uses are among them."""
+
+PARTS = ("real_part", "imaginary_part")
 
 _JOINED = re.compile(
     rf"(a(?:rc)?(?:sin|cos|tan)|(?:sin|cos|tan|cot|sec|csc))(\d*)([A-Za-z]|{'|'.join(sorted(GREEK_WORDS))}|)(_?[0-9xyz])?",
@@ -101,6 +105,8 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         return letters, True
     if len(word) == 2 and word[0] == "i" and word not in WORDS_WITH_I:
         return letters, True  # the imaginary unit, or an index, times a letter
+    if word[0] == "i" and all(letter in alone for letter in letters[1:]):
+        return letters, True
     if len(word) == 2 and word[1] in "xyz":
         return ((), False) if word[0] in VECTORS else (letters, word[0] in SCALARS or word[1] in alone)
     if word[-1] in "xyz" or len(letters) > MOST_LETTERS or len(set(letters)) < len(letters):

@@ -108,6 +108,7 @@ class Constants:
     Parameters
     ----------
     axis : 0, 1 or 2
+        Index of the body axis about which the torque acts.
     moments : 2 ratios
         Moments of inertia across the axis and about it, kg m^2, each a pair of integers (numerator, denominator > 0).
     torque, damping, across : ratios

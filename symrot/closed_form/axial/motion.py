@@ -28,7 +28,7 @@ from symrot.closed_form.axial.angle import Turning, exp_and_expm1
 from symrot.closed_form.build import Floats, times_of
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
@@ -147,6 +147,7 @@ def motion(
     inertia : 3 numbers
         Principal moments, kg m^2, positive.
     axis : 0, 1 or 2
+        Index of the principal axis about which the torque acts.
     torque : number
         Torque about the axis, N m, fixed in the body.
     omega0 : 3 numbers

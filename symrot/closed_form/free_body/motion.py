@@ -30,7 +30,7 @@ from symrot.closed_form.arithmetic.pairs import (
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.formula.exact_numbers import NEGLIGIBLE_BITS
 from symrot.inertia.principal import Principal
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["Defect", "FreeRigidBody", "gaps", "motion", "starts"]
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, flatten_pairs, numbers, same
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["Gyrostat", "motion", "starts"]
 

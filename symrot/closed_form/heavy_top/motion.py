@@ -27,7 +27,7 @@ from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
 from symrot.kinematics.hamilton import hamilton
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["Frame", "Top", "motion", "starts"]
 
@@ -160,7 +160,7 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the axes of the scene are the same, so that no attitude has to be converted."""
+        """Whether these axes are those of the scene, so that no attitude has to be converted."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:

@@ -69,6 +69,7 @@ class Compiled:
     Parameters
     ----------
     axis : 0, 1 or 2
+        Index of the body axis about which the torque acts.
     numbers : 20 floats
         The numbers that ``symrot_spin_up_prepare`` takes.
 

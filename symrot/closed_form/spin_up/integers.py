@@ -62,6 +62,7 @@ class Integers:
     moments : 2 Fractions
         Moments of inertia across the axis and about it, kg m^2.
     axis : 0, 1 or 2
+        Index of the body axis about which the torque acts.
     torque : Fraction
         Torque about the axis, N m.
     rates : 3 Fractions

@@ -29,7 +29,7 @@ from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.closed_form.spin_up.compiled import Compiled
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up.integers import Integers
@@ -43,6 +43,7 @@ class SpinUp:
     Parameters
     ----------
     body : SpunBody
+        The body and its torque.
     rates : 3 numbers
         Angular velocity at the start, rad/s, not parallel to the axis.
     attitude : 4 numbers
@@ -111,6 +112,7 @@ def motion(
     inertia : 3 numbers
         Principal moments of inertia, kg m^2, positive; those about the two axes across the driven axis are equal.
     axis : 0, 1 or 2
+        Index of the principal axis about which the torque acts.
     torque : number
         Torque about the axis, N m, fixed in the body.
     omega0, quaternion0 : 3 and 4 numbers

@@ -23,7 +23,7 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant times a core, the part that contains variables, and collects the constants.
+    """A splitter of expressions into a constant factor, which it collects, and a core, which contains the variables.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return (sign, formula tree) for a constant coefficient times a part with variables."""
+        """Return (sign, formula tree) of the product of a constant coefficient and a part with variables."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core

@@ -55,14 +55,14 @@ def with_companions(system: Recurrences) -> Recurrences:
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Return a product of polynomials; raise _Open if it has too many monomials before equal monomials are combined."""
+    """Return the product of two polynomials; raise _Open if multiplying it out gives too many terms."""
     if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
         raise _Open
     return a * b
 
 
 class _Closure:
-    """A system, and the auxiliary states that are needed for its rates and for the rates of the auxiliary states."""
+    """A system together with the auxiliary states that its rates and the rates of these states need."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series

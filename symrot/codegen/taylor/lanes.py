@@ -18,7 +18,7 @@ from symrot.formula.tree import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
-MOST_USES = (1, 2)  # a product in at most so many sums is computed in each; the faster of both layouts is used
+MOST_USES = (1, 2)  # a product in at most this many sums is computed in each of them; the faster layout is used
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 
@@ -107,7 +107,7 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return the system in which products that occur together in several sums are replaced by one sum of them."""
+    """Return a system in which products that occur together in several sums form one sum of their own."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]

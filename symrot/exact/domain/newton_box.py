@@ -37,6 +37,7 @@ class EquationSystem:
     Parameters
     ----------
     formulas : sequence of Expr
+        The formulas that must be zero.
     leaves : sequence of Expr
         All symbols, functions of time and derivatives in the formulas.
     """

@@ -102,6 +102,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     Parameters
     ----------
     node : Expr
+        The power, imaginary unit or absolute value.
     radicand : function
         Function from an expression and the index of a root to the factors of the radicand.
 

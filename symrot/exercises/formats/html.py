@@ -1,4 +1,4 @@
-"""Exercises as one self-contained page: light and dark, printed or on a phone; it grades numbers without network."""
+"""Sheets of exercises as one HTML file that grades numerical answers without a network connection."""
 
 import json
 import re
@@ -20,7 +20,7 @@ HINTS = ("Hint 1: the law", "Hint 2: the equation", "Hint 3: with numbers")
 
 
 def html_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as a page."""
+    """Return exercises as the text of one self-contained HTML page, which grades numerical answers."""
     folder = files(__package__)
     parts = [
         "<h1>Exercises</h1>",
@@ -67,17 +67,17 @@ def _question(number: int, question: Question) -> str:
 
 
 def drawing(exercise: Exercise) -> str:
-    """Return the figure of an exercise, or an empty text."""
+    """Return the HTML of an exercise's figure, or an empty text if the exercise has no figure."""
     return f'<figure class="sketch">{exercise.figure}</figure>' if exercise.figure else ""
 
 
 def solution_html(exercise: Exercise, text: Callable[[str], str]) -> str:
-    """Return the solution as HTML; ``text`` converts Markdown with formulas."""
+    """Return the solution of an exercise as HTML; ``text`` converts Markdown with formulas to HTML."""
     return "\n".join(f"<p>{text(f'{line.reason} $${line.latex}$$')}</p>" for line in exercise.solution)
 
 
 def mathjax(text: str) -> str:
-    r"""Return Markdown as HTML with formulas in ``\(`` and ``\[``, which MathJax in Moodle shows."""
+    r"""Return Markdown as HTML with formulas between ``\(..\)`` or ``\[..\]``, which MathJax in Moodle displays."""
     parts = re.split(r"(\$\$.+?\$\$|\$[^$]+\$)", text)
     return "".join(_delimited(escape(part, quote=False)) for part in parts)
 
@@ -89,18 +89,18 @@ def _delimited(part: str) -> str:
 
 
 def _displayed(text: str) -> str:
-    """Return Markdown as HTML with MathML, and with formulas in ``$$`` on lines of their own."""
+    """Return Markdown as HTML: formulas become MathML, and formulas in ``$$`` get lines of their own."""
     parts = re.split(r"\$\$(.+?)\$\$", text)
     return "".join(_inline_display(part) if place % 2 else prose(part) for place, part in enumerate(parts))
 
 
 def _inline_display(latex: str) -> str:
-    """Return a displayed formula that may be inside a paragraph."""
+    """Return the MathML of a displayed formula, in a form that is allowed inside a paragraph."""
     return display(latex).replace("<div ", "<span ").replace("</div>", "</span>")
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return what the page needs to grade numbers: answers, usual mistakes, and units."""
+    """Return the data for the script of the page, which grades numbers: answers, usual mistakes and units."""
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,

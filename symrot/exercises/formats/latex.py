@@ -1,4 +1,4 @@
-"""Exercises as a LaTeX document: a page of exercises, then hints and solutions."""
+"""Sheets of exercises as a LaTeX document: first the exercises, then hints and solutions."""
 
 import re
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"
 
 
 def latex_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as a LaTeX document."""
+    """Return exercises as the text of a LaTeX document."""
     parts = [HEAD + r"\section*{Exercises}"]
     for number, exercise in enumerate(exercises, 1):
         questions = "\n".join(rf"\item[({each.key})] {prose(each.prompt)}" for each in exercise.questions)
@@ -51,7 +51,7 @@ def latex_sheet(exercises: Sequence[Exercise]) -> str:
 
 
 def prose(text: str) -> str:
-    """Return Markdown prose as LaTeX: formulas stay, displayed formulas are fitted to the line."""
+    """Return Markdown text as LaTeX; formulas are copied, and wide displayed formulas are scaled to the line width."""
     pieces = re.split(r"(\$\$.+?\$\$|\$[^$]+\$)", text)
     return "".join(_piece(piece) for piece in pieces)
 

@@ -1,4 +1,4 @@
-"""Exercises as Markdown: the exercises first, then hints and solutions."""
+"""Sheets of exercises as Markdown: first the exercises, then hints and solutions."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,13 +9,13 @@ __all__ = ["data_text", "markdown_sheet"]
 
 
 def data_text(data: Sequence[Datum]) -> str:
-    """Return the numbers of an exercise as a sentence with formulas."""
+    """Return the given quantities of an exercise, with their values, as one sentence."""
     pairs = (f"${each.latex} = {each.value}{unit_latex(each.unit)}$ ({each.words})" for each in data)
     return f"Data: {', '.join(pairs)}." if data else ""
 
 
 def markdown_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as Markdown."""
+    """Return exercises as Markdown text."""
     lines = ["# Exercises", ""]
     for number, exercise in enumerate(exercises, 1):
         lines += [f"## {number}. {exercise.title}", "", exercise.statement, "", data_text(exercise.data), ""]

@@ -24,7 +24,7 @@ UNMATCHED = (
 
 
 def moodle_quiz(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as an XML document that Moodle imports."""
+    """Return exercises as the text of an XML file that Moodle imports into its question bank."""
     quiz = Element("quiz")
     for topic in dict.fromkeys(exercise.topic for exercise in exercises):
         category = SubElement(quiz, "question", type="category")
@@ -80,7 +80,7 @@ def _formula(element: Element, question: Question) -> None:
 
 
 def _spellings(formula: str) -> tuple[str, ...]:
-    """Return ways to write a formula, without the asterisks that Moodle takes for any text."""
+    """Return the spellings of a formula that Moodle accepts; ``*`` is escaped, since alone it matches any text."""
     powers = formula.replace("**", "^")
     return tuple(text.replace("*", r"\*") for text in dict.fromkeys((powers, powers.replace(" ", ""))))
 

@@ -50,7 +50,7 @@ _JOINED = re.compile(r"(?P<divided>/\s*)?(?P<name>[^\W\d]\w*)(?P<power>(?:\^|\*\
 
 
 def mark_formula(key: str, answer: str, question: Question) -> Mark:
-    """Return the mark of a formula.
+    """Return the mark of an answer that is a formula.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
 
 
 def _misfit(own: str, truth: str, question: Question) -> str:
-    """Return how the units of a formula differ from those of the answer, or an empty text."""
+    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree."""
     try:
         dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
     except InputError:  # LaTeX in which the names of the units do not occur
@@ -96,9 +96,10 @@ def _is_right(verdict: Verdict) -> bool:
 def _verdict(
     own: str, truth: str, question: Question, repair: bool = True, units: dict[str, str] | None = None
 ) -> Verdict:
-    """Return the verdict on the claim that a formula equals the answer.
+    """Return the checker's verdict on the claim that a student's formula ``own`` equals the right formula ``truth``.
 
-    Without units the checker looks for the error even where the units do not fit.
+    ``units`` maps symbols to their units. By default the checker is not told the units, so that it also finds other
+    errors in a formula whose units are wrong.
     """
     latex = "\\" in own
     assume = [f"{name} > 0" for name in question.positive if not latex]
@@ -106,7 +107,7 @@ def _verdict(
 
 
 def _sides(answer: str, question: Question) -> tuple[str, str]:
-    """Return the answer without its name, and the true formula in the same language.
+    """Return the student's formula and the right formula, both as LaTeX or both as typed text.
 
     Raises
     ------
@@ -116,7 +117,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     text = answer.strip().strip("$").strip()
     *names, formula = re.split(r"==?|:=", text)
     if len(names) > 1 or not formula.strip():
-        raise InputError(f"expected one formula for ${question.name}$, got {answer[:60]!r}")
+        raise InputError(f"expected one formula for ${question.name}$ with at most one '=', got {answer[:60]!r}")
     if "\\" in formula:
         return formula, question.latex
     bare = re.sub(r"\{([^{}]*)\}", r"\1", re.sub(r"\^\{([^{}]*)\}", r"^(\1)", formula))
@@ -126,12 +127,12 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     unknown = sorted({name for name in _NAME.findall(plain) if name not in known})
     if unknown:
         letters = ", ".join(name for name in question.symbols if name in _NAME.findall(question.answer))
-        raise InputError(f"expected a formula in {letters}, got one with {', '.join(unknown)}")
+        raise InputError(f"expected a formula in {letters}, got a formula that contains {', '.join(unknown)}")
     return f"1*({plain})" if re.fullmatch(r"\s*\w+\s*", plain) else plain, question.answer
 
 
 def _plain(text: str) -> str:
-    """Return a text with Greek letters by name, and with names such as ``dphi`` and ``acos``."""
+    """Return a typed formula with Greek letters spelled out, rates written as ``dphi``, and ``arccos`` as ``acos``."""
     text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
     for letter, name in GREEK.items():
         text = text.replace(f"{letter}\u0307", f" d{name}")
@@ -142,7 +143,7 @@ def _plain(text: str) -> str:
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:
-    """Return a name, or the product of known names that are written together: ``m*g*l`` for ``mgl``."""
+    """Return a known name unchanged, and several names written together as a product: ``m*g*l`` for ``mgl``."""
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
     for single in (name, spelled, name.replace("_", "")):
@@ -163,7 +164,7 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
-    """Return the code of the error: the reciprocal, two letters exchanged, or the checker's diagnosis."""
+    """Return the code of the student's error, such as ``"inverse"``: a key of the table of formula faults."""
     if "\\" not in own:
         if _holds(f"1/({own})", truth, question):
             return "inverse"
@@ -184,12 +185,15 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
 
 
 def _letters(formula: str, question: Question) -> set[str]:
-    """Return the symbols of the exercise that a formula uses."""
+    """Return the names of the exercise's symbols that occur in a formula."""
     return {name for name in _NAME.findall(formula) if name in question.symbols}
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:
-    """Return the diagnosis of a formula whose units do not fit, in letters that have no conventional units."""
+    """Return the checker's error code for a formula with wrong units.
+
+    The symbols get names without a conventional unit, so that the checker looks for other errors than wrong units.
+    """
     letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
     plain = {letters[name]: "1" for name in question.symbols}
     renamed = replace(question, symbols=plain, positive=tuple(letters[name] for name in question.positive))
@@ -198,7 +202,7 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether a changed formula is right; a formula without a value, such as the reciprocal of 0, is not."""
+    """Return whether a modified answer equals the right formula; False if it has no value, such as 1/0."""
     try:
         return _is_right(_verdict(own, truth, question, repair=False))
     except InputError:
@@ -206,7 +210,7 @@ def _holds(own: str, truth: str, question: Question) -> bool:
 
 
 def _exchanged(own: str, truth: str, question: Question) -> bool:
-    """Return whether the answer is right with two of its letters exchanged."""
+    """Return whether the answer becomes right if two of its symbols are exchanged."""
     names = sorted({name for name in _NAME.findall(own) + _NAME.findall(truth) if name in question.symbols})
     for place, first in enumerate(names):
         for second in names[place + 1 :]:

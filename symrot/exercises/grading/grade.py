@@ -1,4 +1,4 @@
-"""The function ``grade``, and the files of answers that the command reads."""
+"""The function ``grade``, and the grading of answers in files for the command ``symrot grade``."""
 
 import json
 import re
@@ -21,11 +21,12 @@ KINDS: dict[str, Callable[[str, str, Question], Mark]] = {"number": mark_number,
 
 
 def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequence[str]) -> Grades:
-    """Return the marks of answers to one exercise or to a sheet.
+    """Return the marks for answers to one exercise or to a sheet of exercises.
 
     Parameters
     ----------
     exercises : Exercise or ExerciseSheet
+        The exercise, or the sheet of exercises, that was answered.
     answers : mapping of str to str, or sequence of str
         Answers by question, ``"a"`` of an exercise and ``"1a"`` of a sheet; or one answer for each question in order.
         Numbers have a unit and at least two significant digits; formulas are typed text or LaTeX.
@@ -49,14 +50,18 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     """
     questions = dict(_keyed(exercises))
     if isinstance(answers, str):
-        raise InputError("answers: expected a mapping or a list of texts, got one text")
+        raise InputError(
+            f"answers: expected a list of texts, or a mapping from question to text, got the text {answers[:60]!r}"
+        )
     if not isinstance(answers, Mapping):
         if len(answers) > len(questions):
-            raise InputError(f"answers: expected at most {len(questions)}, one for each question, got {len(answers)}")
+            raise InputError(
+                f"answers: expected at most {len(questions)} texts, one for each question, got {len(answers)}"
+            )
         answers = dict(zip(questions, answers, strict=False))
     unknown = [key for key in answers if key not in questions]
     if unknown:
-        raise InputError(f"answers: expected the questions {', '.join(questions)}, got {unknown[0]!r}")
+        raise InputError(f"answers: expected names among the questions {', '.join(questions)}, got {unknown[0]!r}")
     return Grades(tuple(_mark(key, answers.get(key), question) for key, question in questions.items()))
 
 
@@ -78,7 +83,7 @@ def _mark(key: str, answer: Any, question: Question) -> Mark:
 
 
 def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
-    """Return the marks of a file of answers to the exercises of a JSON file.
+    """Return the marks for a file of answers to the exercises in a JSON file.
 
     Parameters
     ----------
@@ -103,7 +108,8 @@ def _answers(path: str | Path, text: str) -> dict[str, str]:
         match = re.match(r"\s*\(?(\d+[a-z])\)?\s*[:)]\s*(.*)$", line)
         if match is None:
             raise InputError(
-                f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3'"
+                f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3', "
+                f"got {line.strip()[:60]!r}"
             )
         answers[match[1]] = match[2]
     return answers

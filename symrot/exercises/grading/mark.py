@@ -1,4 +1,4 @@
-"""The mark of one answer, and the marks of a sheet."""
+"""The mark of one answer, and the marks of all answers to a sheet."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,13 +10,14 @@ __all__ = ["Grades", "Mark"]
 
 @dataclass(frozen=True)
 class Mark:
-    """The mark of one answer.
+    """The result of grading one answer.
 
     Attributes
     ----------
     key : str
         The question, such as ``"1a"`` or ``"a"``.
     answer : str
+        The answer as the student wrote it.
     outcome : str
         ``"right"``, ``"wrong"``, ``"unread"`` (the answer cannot be read), ``"undecided"`` or ``"missing"``.
     credit : Fraction
@@ -46,17 +47,18 @@ class Mark:
         return f"({self.key}) {credit}{f': {self.text}' if self.text else ''}"
 
     def to_json(self) -> dict[str, Any]:
-        """Return the mark as JSON data."""
+        """Return the mark as plain data for JSON."""
         return {**vars(self), "credit": float(self.credit)}
 
 
 @dataclass(frozen=True)
 class Grades:
-    """The marks of all questions of an exercise or a sheet.
+    """The marks for all questions of one exercise or of a sheet.
 
     Attributes
     ----------
     marks : tuple of Mark
+        One mark for each question, in the order of the questions.
 
     Examples
     --------
@@ -74,7 +76,7 @@ class Grades:
 
     @property
     def credit(self) -> Fraction:
-        """The sum of all credits; each question has one point."""
+        """The sum of the credits of all questions, each from 0 to 1."""
         return sum((mark.credit for mark in self.marks), Fraction(0))
 
     def __str__(self) -> str:
@@ -82,5 +84,5 @@ class Grades:
         return "\n".join([*map(str, self.marks), total])
 
     def to_json(self) -> dict[str, Any]:
-        """Return the marks as JSON data."""
+        """Return all marks as plain data for JSON."""
         return {"credit": float(self.credit), "of": len(self.marks), "marks": [mark.to_json() for mark in self.marks]}

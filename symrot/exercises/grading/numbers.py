@@ -1,4 +1,4 @@
-"""The grading of a number with its unit."""
+"""The grading of numerical answers with units."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -40,7 +40,7 @@ _FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
 @dataclass(frozen=True)
 class _Number:
-    """A number that was read, in SI units if it has a unit, with the digits that were written (None: exact)."""
+    """A student's number in SI units, with its unit and its count of significant digits (None if exact, as 1/3)."""
 
     value: float
     unit: UnitProduct | None
@@ -48,14 +48,14 @@ class _Number:
 
     @property
     def half_digit(self) -> float:
-        """The largest error of a number that is rounded correctly to its digits."""
+        """Half a unit of the last written digit: the largest error of a correctly rounded number."""
         if self.digits is None or self.value == 0:
             return 0.0
         return 0.5 * 10.0 ** (int(log10(abs(self.value)) // 1) - self.digits + 1)
 
 
 def mark_number(key: str, answer: str, question: Question) -> Mark:
-    """Return the mark of a number.
+    """Return the mark of an answer that is a number.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
 
 
 def _readings(answer: str) -> Iterator[_Number]:
-    """Yield what the text of a number may mean; a comma is a decimal point, or separates thousands."""
+    """Yield the possible meanings of a typed number; a comma may be a decimal point or separate thousands."""
     text = answer.strip()
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
@@ -93,7 +93,7 @@ def _readings(answer: str) -> Iterator[_Number]:
 
 
 def _read(text: str) -> _Number | None:
-    """Return the number of a text: the longest beginning that is a number, before a unit or the end."""
+    """Return the number and unit in a text, or None if the text does not begin with a number."""
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")
         if end < len(text) and (text[end - 1].isalnum() and text[end].isalnum() and not text[end - 1].isdigit()):
@@ -119,7 +119,7 @@ def _value(text: str) -> float | None:
 
 
 def _digits(text: str) -> int | None:
-    """Return the significant digits of a decimal, or None for a fraction or a root, which is exact."""
+    """Return the number of significant digits of a decimal, or None for a fraction or root, which is exact."""
     plain = _PLAIN.fullmatch(text)
     if plain is None:
         return None
@@ -127,7 +127,7 @@ def _digits(text: str) -> int | None:
 
 
 def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
-    """Return the mark of a number that was read."""
+    """Return the mark of one possible meaning of a typed number."""
     truth = float(question.decimal)
     own = unit_of(question.unit) if question.unit else None
     if number.unit is not None and number.unit.dimension != (own.dimension if own else {}):
@@ -168,7 +168,7 @@ def _is_right(value: float, truth: float, half_digit: float, digits: int | None)
 
 
 def _faults(value: float, truth: float, question: Question) -> Iterator[tuple[str, dict[str, str]]]:
-    """Yield the kinds of error that would explain a number, the likeliest first."""
+    """Yield (error code, words for the message) for each usual error that explains a wrong number, likeliest first."""
     if _near(-value, truth):
         yield "sign", {}
     for slip, number in question.slips.items():

@@ -1,4 +1,4 @@
-"""What a student reads about a wrong answer, and the credit for it. One table for numbers, one for formulas."""
+"""Messages about wrong answers and the credit for each kind of error: one table for numbers, one for formulas."""
 
 from fractions import Fraction
 

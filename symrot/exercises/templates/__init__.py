@@ -110,20 +110,20 @@ TOPICS: dict[str, tuple[str, ...]] = {
 
 
 def template(name: str) -> Template:
-    """Return the template of a name."""
+    """Return the template function with a given name."""
     made: Template = getattr(import_module(f"{__name__}.{topic_of(name)}"), name)
     return made
 
 
 def topic_of(name: str) -> str:
-    """Return the topic of a template."""
+    """Return the topic (module name) that contains a given template."""
     return next(topic for topic, names in TOPICS.items() if name in names)
 
 
 def chosen(topic: str) -> tuple[str, ...]:
-    """Return the templates of a topic, one template by its name, or all templates for an empty text.
+    """Return template names: those of a topic, one template by its name, or all templates for an empty text.
 
-    All templates come in turn: the first of each topic, then the second of each.
+    All templates are returned in turn: first the first template of each topic, then the second of each, and so on.
 
     Raises
     ------

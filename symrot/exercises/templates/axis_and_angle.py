@@ -1,4 +1,4 @@
-"""Axis and angle of a rotation."""
+"""Exercises on the axis and angle of a rotation."""
 
 from random import Random
 
@@ -16,14 +16,14 @@ POINT = tuple(quantity(each, "1 2 3 4 5", "m", "coordinate") for each in (x, y, 
 
 
 def _axis(random: Random) -> tuple[Matrix, str]:
-    """Return a unit vector with rational components, and its text."""
+    """Return a random unit vector with rational components, and its LaTeX text."""
     components = random.choice(AXES)
     length = sum(component**2 for component in components) ** Rational(1, 2)
     return Matrix(components) / length, rf"\tfrac1{length}({', '.join(map(str, components))})"
 
 
 def rotated_point(random: Random) -> Problem:
-    """A point that is rotated about an oblique axis."""
+    """Return a problem that asks for a coordinate of a point after a rotation about an oblique axis."""
     axis, text = _axis(random)
     point = Matrix((x, y, z))
     row = random.randrange(3)
@@ -45,7 +45,7 @@ def rotated_point(random: Random) -> Problem:
 
 
 def trace_of_rotation(random: Random) -> Problem:
-    """The trace of a rotation matrix, and the angle."""
+    """Return a problem that asks for the trace of the matrix of a rotation by a given angle."""
     axis, text = _axis(random)
     trace = dcm_of_axis_angle(axis, alpha).trace()
     formula = 1 + 2 * cos(alpha)
@@ -60,7 +60,7 @@ def trace_of_rotation(random: Random) -> Problem:
 
 
 def matrix_of_axis_angle(random: Random) -> Problem:
-    """An entry of the rotation matrix of an oblique axis."""
+    """Return a problem that asks for an entry of the matrix of a rotation about an oblique axis."""
     axis, text = _axis(random)
     row, column = random.choice(((0, 1), (1, 2), (2, 0), (0, 2), (1, 0), (2, 1)))
     entry = dcm_of_axis_angle(axis, alpha)[row, column]
@@ -78,7 +78,7 @@ def matrix_of_axis_angle(random: Random) -> Problem:
 
 
 def rodrigues_parameter(random: Random) -> Problem:
-    """A component of the Rodrigues vector."""
+    """Return a problem that asks for a component of the Rodrigues vector."""
     axis, text = _axis(random)
     place = random.randrange(3)
     matrix = dcm_of_axis_angle(axis, alpha)

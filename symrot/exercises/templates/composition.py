@@ -1,4 +1,4 @@
-"""Composition of rotations: order, angle, relative attitude."""
+"""Exercises on composed rotations: order, resulting angle, relative attitude."""
 
 from random import Random
 
@@ -17,7 +17,7 @@ POINT = tuple(quantity(each, "1 2 3 4 5", "m", "coordinate") for each in (x, y, 
 
 
 def point_turned_twice(random: Random) -> Problem:
-    """A point that is turned about two axes fixed in space, one after the other."""
+    """Return a problem that asks for a coordinate of a point after rotations about two axes fixed in space."""
     one, two = random.sample(AXES, 2)
     matrix = elementary_rotation(two, theta) * elementary_rotation(one, phi)
     turned = matrix * Matrix((x, y, z))
@@ -38,7 +38,7 @@ def point_turned_twice(random: Random) -> Problem:
 
 
 def angle_of_two_rotations(random: Random) -> Problem:
-    """The angle of the rotation that two rotations about perpendicular axes make together."""
+    """Return a problem that asks for the angle of two successive rotations about perpendicular axes."""
     one, two = random.sample(AXES, 2)
     matrix = elementary_rotation(two, theta) * elementary_rotation(one, phi)
     cosine = normal_form((matrix.trace() - 1) / 2)
@@ -59,7 +59,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
 
 
 def order_matters(random: Random) -> Problem:
-    """The distance between the ends of a pointer after two rotations in both orders."""
+    """Return a problem that asks how far apart a pointer ends if two rotations are applied in either order."""
     one, two = random.sample(AXES, 2)
     pointer = Matrix([int(axis == one) for axis in AXES])
     first = elementary_rotation(two, theta) * elementary_rotation(one, phi) * pointer
@@ -79,7 +79,7 @@ def order_matters(random: Random) -> Problem:
 
 
 def relative_rotation(random: Random) -> Problem:
-    """The angle between two attitudes about the same and about perpendicular axes."""
+    """Return a problem that asks for the cosine of the angle of the rotation from one attitude to another."""
     one, two = random.sample(AXES, 2)
     relative = elementary_rotation(one, phi).T * elementary_rotation(two, theta)
     cosine = (relative.trace() - 1).expand() / 2
@@ -96,7 +96,7 @@ def relative_rotation(random: Random) -> Problem:
 
 
 def rotation_in_steps(random: Random) -> Problem:
-    """Two rotations about the same axis add."""
+    """Return a problem that asks for an entry of the matrix of two rotations about the same axis."""
     axis = random.choice(AXES)
     matrix = elementary_rotation(axis, phi) * elementary_rotation(axis, theta)
     place = next(n for n in range(3) if AXES[n] != axis)

@@ -1,4 +1,4 @@
-"""Euler angles and their rates, for several sequences."""
+"""Exercises on Euler angles and their rates, for several sequences."""
 
 from random import Random
 
@@ -19,7 +19,7 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return the angles and rates that formulas use."""
+    """Return the angles and rates that occur in the given formulas, as quantities with possible numbers."""
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(
@@ -56,17 +56,17 @@ def _rate(random: Random, frame: str, name: str) -> Problem:
 
 
 def body_rates(random: Random) -> Problem:
-    """A body component of the angular velocity."""
+    """Return a problem that asks for a body component of the angular velocity, given the Euler angle rates."""
     return _rate(random, "body", r"\omega_{}")
 
 
 def space_rates(random: Random) -> Problem:
-    """A space component of the angular velocity."""
+    """Return a problem that asks for a space component of the angular velocity, given the Euler angle rates."""
     return _rate(random, "space", r"\omega_{}")
 
 
 def angle_rates_from_omega(random: Random) -> Problem:
-    """A rate of the angles from the body components of the angular velocity."""
+    """Return a problem that asks for an Euler angle rate, given the body components of the angular velocity."""
     sequence, place = random.choice((("ZXZ", 0), ("ZYX", 0), ("ZYZ", 0), ("ZXZ", 1)))
     matrix = rate_jacobian(sequence)
     omega = Matrix((omega_1, omega_2, omega_3))
@@ -88,7 +88,7 @@ def angle_rates_from_omega(random: Random) -> Problem:
 
 
 def matrix_entry(random: Random) -> Problem:
-    """An entry of the direction cosine matrix."""
+    """Return a problem that asks for an entry of the direction cosine matrix."""
     sequence = random.choice(SEQUENCES)
     matrix = dcm(sequence)
     row, column = random.choice([(i, j) for i in range(3) for j in range(3) if matrix[i, j].is_Add])
@@ -105,7 +105,7 @@ def matrix_entry(random: Random) -> Problem:
 
 
 def _product(sequence: str) -> Matrix:
-    """Return the product of the three elementary rotations, each from a sequence of its own."""
+    """Return the product of the matrices of a sequence's three rotations, each computed on its own."""
     factors = (dcm(axis + _other(axis) + axis, (angle, 0, 0)) for axis, angle in zip(sequence, angles, strict=True))
     product = Matrix.eye(3)
     for factor in factors:
@@ -118,7 +118,7 @@ def _other(axis: str) -> str:
 
 
 def space_direction_of_axis(random: Random) -> Problem:
-    """A component in space of the third axis of the body."""
+    """Return a problem that asks for a space component of the unit vector along the body's third axis."""
     row = random.choice((0, 1))
     entry = dcm("ZXZ")[row, 2]
     name = f"e_{{3,{'xy'[row]}}}"
@@ -134,7 +134,7 @@ def space_direction_of_axis(random: Random) -> Problem:
 
 
 def speed_of_rotation(random: Random) -> Problem:
-    """The magnitude of the angular velocity from the rates."""
+    """Return a problem that asks for the magnitude of the angular velocity, given the Euler angle rates."""
     sequence = random.choice(("ZXZ", "ZYZ"))
     omega = rate_jacobian(sequence) * Matrix(angle_rates)
     square = normal_form((omega.T * omega)[0].expand())
@@ -153,7 +153,7 @@ def speed_of_rotation(random: Random) -> Problem:
 
 
 def vertical_in_body(random: Random) -> Problem:
-    """A component of the vertical in the body: what an accelerometer at rest measures."""
+    """Return a problem that asks for a body component of the vertical, as an accelerometer at rest measures it."""
     sequence = "ZYX"
     row = random.choice((0, 1, 2))
     entry = dcm(sequence)[2, row]
@@ -170,7 +170,7 @@ def vertical_in_body(random: Random) -> Problem:
 
 
 def rate_about_vertical(random: Random) -> Problem:
-    """The vertical component of the angular velocity of a top."""
+    """Return a problem that asks for the vertical component of the angular velocity of a top."""
     omega = rate_jacobian("ZXZ", "space") * Matrix((dphi, dtheta, dpsi))
     vertical = omega[2]
     return Problem(

@@ -1,4 +1,4 @@
-"""Euler's equations: angular acceleration, torque, energy and momentum in body axes."""
+"""Exercises on Euler's equations: angular acceleration, torque, energy and momentum in body axes."""
 
 from random import Random
 
@@ -28,13 +28,13 @@ def _used(formula: Expr) -> tuple[Quantity, ...]:
 
 
 def _balance(row: int, acceleration: Expr) -> Expr:
-    """Return the torque that Euler's equation of an axis needs for an angular acceleration."""
+    """Return the torque about axis ``row`` that Euler's equation requires for a given angular acceleration."""
     inertia = diag(A, B, C)
     return (inertia * Matrix([acceleration if n == row else 0 for n in range(3)]) + OMEGA.cross(inertia * OMEGA))[row]
 
 
 def free_acceleration(random: Random) -> Problem:
-    """The angular acceleration of a free body about one axis."""
+    """Return a problem that asks for the angular acceleration of a free body about one axis."""
     row = random.randrange(3)
     acceleration = euler_equations(torque=None)[row]
     name = rf"\dot\omega_{row + 1}"
@@ -57,7 +57,7 @@ def free_acceleration(random: Random) -> Problem:
 
 
 def driven_acceleration(random: Random) -> Problem:
-    """The angular acceleration under a torque about one axis."""
+    """Return a problem that asks for the angular acceleration of a body under a torque about one axis."""
     row = random.randrange(3)
     acceleration = euler_equations()[row]
     name = rf"\dot\omega_{row + 1}"
@@ -80,7 +80,7 @@ def driven_acceleration(random: Random) -> Problem:
 
 
 def torque_to_keep(random: Random) -> Problem:
-    """The torque that keeps the angular velocity fixed in the body."""
+    """Return a problem that asks for the torque that keeps the angular velocity fixed in body axes."""
     row = random.randrange(3)
     tau = (tau_1, tau_2, tau_3)[row]
     (needed,) = solve(euler_equations()[row], tau)
@@ -105,7 +105,7 @@ def torque_to_keep(random: Random) -> Problem:
 
 
 def kinetic_energy(random: Random) -> Problem:
-    """The kinetic energy of rotation in principal axes."""
+    """Return a problem that asks for the kinetic energy of rotation in principal axes."""
     energy = (OMEGA.T * diag(A, B, C) * OMEGA)[0] / 2
     written = A * omega_1**2 / 2 + B * omega_2**2 / 2 + C * omega_3**2 / 2
     return Problem(
@@ -119,7 +119,7 @@ def kinetic_energy(random: Random) -> Problem:
 
 
 def angular_momentum(random: Random) -> Problem:
-    """The magnitude of the angular momentum."""
+    """Return a problem that asks for the magnitude of a body's angular momentum."""
     momentum = diag(A, B, C) * OMEGA
     square = (momentum.T * momentum)[0]
     return Problem(
@@ -142,7 +142,7 @@ def angular_momentum(random: Random) -> Problem:
 
 
 def unbalanced_shaft(random: Random) -> Problem:
-    """The torque of the bearings on a shaft whose axis is no principal axis."""
+    """Return a problem that asks for the bearings' torque on a shaft whose axis is not a principal axis."""
     tensor = Matrix([[A, 0, I_xz], [0, B, I_yz], [I_xz, I_yz, I_zz]])
     rotation = Matrix((0, 0, Omega))
     torque = rotation.cross(tensor * rotation)
@@ -165,7 +165,7 @@ def unbalanced_shaft(random: Random) -> Problem:
 
 
 def power_of_torque(random: Random) -> Problem:
-    """The power of a torque, as the rate of the kinetic energy."""
+    """Return a problem that asks for the power of a torque, which is the rate of the kinetic energy."""
     rates = euler_equations()
     energy = (OMEGA.T * diag(A, B, C) * OMEGA)[0] / 2
     power = sum((energy.diff(omega) * rate for omega, rate in zip(OMEGA, rates, strict=True)), Rational(0))

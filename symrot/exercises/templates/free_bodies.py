@@ -1,4 +1,4 @@
-"""Free bodies, symmetric and asymmetric: precession, cones, polhodes, separatrix."""
+"""Exercises on free bodies, symmetric and asymmetric: precession, cones, polhodes, separatrix."""
 
 from random import Random
 
@@ -23,7 +23,7 @@ SYMMETRIC = (
 
 
 def body_precession(random: Random) -> Problem:
-    """The rate at which the angular velocity goes around the axis, in the body."""
+    """Return a problem that asks for the rate at which omega goes around the symmetry axis, seen from the body."""
     rates = euler_equations((A, A, C), None)
     formula = omega_3 * (C - A) / A
     return Problem(
@@ -46,7 +46,7 @@ def body_precession(random: Random) -> Problem:
 
 
 def space_precession(random: Random) -> Problem:
-    """The rate of precession of the axis about the angular momentum."""
+    """Return a problem that asks for the rate at which the symmetry axis precesses about the angular momentum."""
     momentum = diag(A, A, C) * Matrix((omega_1, 0, omega_3))
     formula = sqrt(A**2 * omega_1**2 + C**2 * omega_3**2) / A
     square = (momentum.T * momentum)[0] / A**2
@@ -91,13 +91,13 @@ def _cone(name: str, words: str, tangent: Expr, left: Expr, law: str) -> Problem
 
 
 def body_cone(random: Random) -> Problem:
-    """The half angle of the body cone."""
+    """Return a problem that asks for the half angle of the body cone of a free symmetric body."""
     law = "The body cone is swept by the angular velocity about the axis of symmetry."
     return _cone(r"\beta", "the body cone", omega_1 / omega_3, OMEGA[0] / OMEGA[2], law)
 
 
 def angle_of_momentum(random: Random) -> Problem:
-    """The angle of nutation: between angular momentum and axis."""
+    """Return a problem that asks for the nutation, the angle between angular momentum and symmetry axis."""
     momentum = diag(A, A, C) * Matrix((omega_1, 0, omega_3))
     law = "The angular momentum has the components $A\\omega_1$ across the axis and $C\\omega_3$ along it."
     words = "the cone on which the axis moves about the angular momentum"
@@ -105,7 +105,7 @@ def angle_of_momentum(random: Random) -> Problem:
 
 
 def disk_wobble(random: Random) -> Problem:
-    """The ratio of wobble and spin of a thin disk."""
+    """Return a problem that asks for the wobble rate, in space, of a thin spinning disk."""
     disk = solid("disk").inertia
     ratio = disk[2, 2] / disk[0, 0]
     formula = 2 * omega_3
@@ -123,7 +123,7 @@ def disk_wobble(random: Random) -> Problem:
 
 
 def rod_like_precession(random: Random) -> Problem:
-    """The precession of a spinning cylinder that wobbles a little."""
+    """Return a problem that asks for the precession of a spinning cylinder that wobbles a little."""
     body = solid("cylinder").inertia
     ratio = body[2, 2] / body[0, 0]
     formula = 6 * R**2 * omega_3 / (L**2 + 3 * R**2)
@@ -155,7 +155,7 @@ def _moments() -> tuple[Quantity, ...]:
 
 
 def separatrix_momentum(random: Random) -> Problem:
-    """The angular momentum on the separatrix for a given energy."""
+    """Return a problem that asks for the angular momentum of the separatrix motion at a given energy."""
     energy = B * omega_2**2 / 2
     formula = sqrt(2 * B * T)
     return Problem(
@@ -175,7 +175,7 @@ def separatrix_momentum(random: Random) -> Problem:
 
 
 def polhode_constants(random: Random) -> Problem:
-    """A component of the angular velocity where the polhode crosses a plane."""
+    """Return a problem that asks for the square of a component of omega where the polhode crosses a plane."""
     square = (2 * A * T - H**2) / (C * (A - C))
     first = (H**2 - 2 * C * T) / (A * (A - C))
     energy = (A * first + C * square) / 2
@@ -206,7 +206,7 @@ def polhode_constants(random: Random) -> Problem:
 
 
 def wobble_period(random: Random) -> Problem:
-    """The period of the wobble in the body, as of the Earth's pole."""
+    """Return a problem that asks for the period of the wobble seen from the body, such as that of the Earth's pole."""
     rates = euler_equations((A, A, C), None)
     period = 2 * pi * A / ((C - A) * omega_3)
     return Problem(

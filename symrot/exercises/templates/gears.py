@@ -1,4 +1,4 @@
-"""Gears: planetary trains, ordinary trains, torques."""
+"""Exercises on gears: rates in planetary gears, and torques."""
 
 from random import Random
 
@@ -21,7 +21,10 @@ CONTACT = r"Z_S(\omega_S - \omega_C) + Z_R(\omega_R - \omega_C)"
 
 
 def _contact() -> Expr:
-    """Return what the teeth in contact make zero, with the rate of the planet eliminated."""
+    """Return an expression in the rates of sun, ring and carrier that is zero because teeth in contact move together.
+
+    The rate of the planet is eliminated.
+    """
     planet = solve(Z_S * (omega_S - omega_C) + Z_P * (omega_P - omega_C), omega_P)[0]
     return (Z_P * (planet - omega_C) - Z_R * (omega_R - omega_C)).expand()
 
@@ -47,7 +50,7 @@ def _train(
 
 
 def ring_fixed(random: Random) -> Problem:
-    """The rate of the carrier, with the ring fixed."""
+    """Return a problem that asks for the carrier's rate in a planetary gear whose ring is fixed."""
     formula = Z_S * omega_S / (Z_R + Z_S)
     return _train(
         omega_R,
@@ -61,7 +64,7 @@ def ring_fixed(random: Random) -> Problem:
 
 
 def sun_fixed(random: Random) -> Problem:
-    """The rate of the carrier, with the sun fixed."""
+    """Return a problem that asks for the carrier's rate in a planetary gear whose sun is fixed."""
     formula = Z_R * omega_R / (Z_R + Z_S)
     return _train(
         omega_S,
@@ -75,7 +78,7 @@ def sun_fixed(random: Random) -> Problem:
 
 
 def carrier_fixed(random: Random) -> Problem:
-    """The rate of the ring, with the carrier fixed."""
+    """Return a problem that asks for the ring's rate in a planetary gear whose carrier is fixed."""
     formula = -Z_S * omega_S / Z_R
     return _train(
         omega_C,
@@ -89,7 +92,7 @@ def carrier_fixed(random: Random) -> Problem:
 
 
 def both_driven(random: Random) -> Problem:
-    """The rate of the carrier, with sun and ring driven."""
+    """Return a problem that asks for the carrier's rate in a planetary gear whose sun and ring are driven."""
     (rate,) = solve(_contact(), omega_C)
     formula = (Z_S * omega_S + Z_R * omega_R) / (Z_R + Z_S)
     return Problem(
@@ -111,7 +114,7 @@ def both_driven(random: Random) -> Problem:
 
 
 def planet_rate(random: Random) -> Problem:
-    """The rate of the planet of a train with a fixed ring."""
+    """Return a problem that asks for the planet's rate in a planetary gear whose ring is fixed."""
     contact = _contact().subs(omega_R, 0)
     carrier = solve(contact, omega_C)[0]
     planet = (
@@ -137,7 +140,7 @@ def planet_rate(random: Random) -> Problem:
 
 
 def torque_of_carrier(random: Random) -> Problem:
-    """The torque at the carrier of a train with a fixed ring."""
+    """Return a problem that asks for the torque that the carrier of a planetary gear with fixed ring delivers."""
     carrier = solve(_contact().subs(omega_R, 0), omega_C)[0]
     torque = tau_1 * omega_S / carrier
     formula = tau_1 * (Z_R + Z_S) / Z_S

@@ -1,4 +1,4 @@
-"""Gyroscopes: wheels on cords, bearings, reaction wheels."""
+"""Exercises on gyroscopes: wheels on cords, bearings, reaction wheels."""
 
 from random import Random
 
@@ -16,12 +16,12 @@ GRAVITY = quantity(g, "9.81", "m/s^2", "gravity")
 
 
 def _gyroscopic_torque(moment: Expr) -> Matrix:
-    """Return the torque on a wheel whose axis, x, is turned about z: the rate of its angular momentum."""
+    """Return the torque on a wheel that spins about x while its axis rotates about z."""
     return Matrix((0, 0, Omega)).cross(Matrix((moment * omega_3, 0, 0)))
 
 
 def wheel_on_cord(random: Random) -> Problem:
-    """The precession of a wheel that hangs from a cord at one end of its level axle."""
+    """Return a problem that asks for the precession of a wheel that hangs from a cord at one end of its level axle."""
     moment = solid("ring").inertia[2, 2]
     torque = _gyroscopic_torque(moment)[1]
     (rate,) = solve(torque - m * g * a, Omega)
@@ -43,7 +43,7 @@ def wheel_on_cord(random: Random) -> Problem:
 
 
 def bearing_torque(random: Random) -> Problem:
-    """The torque on the bearings of a disk in a frame that turns."""
+    """Return a problem that asks for the torque on the bearings of a disk that spins in a rotating frame."""
     moment = solid("disk").inertia[2, 2]
     torque = _gyroscopic_torque(moment)[1]
     formula = m * R**2 * omega_3 * Omega / 2
@@ -60,7 +60,7 @@ def bearing_torque(random: Random) -> Problem:
 
 
 def bearing_forces(random: Random) -> Problem:
-    """The forces on two bearings."""
+    """Return a problem that asks for the gyroscopic force on each bearing of a spinning rotor."""
     moment = solid("disk").inertia[2, 2]
     torque = _gyroscopic_torque(moment)[1]
     formula = m * R**2 * omega_3 * Omega / (2 * L)
@@ -86,7 +86,7 @@ def bearing_forces(random: Random) -> Problem:
 
 
 def reaction_wheel(random: Random) -> Problem:
-    """The rate that a reaction wheel gives a satellite."""
+    """Return a problem that asks for the rate of a satellite whose reaction wheel is spun up."""
     rate = solve(A * Omega + C * (Omega + omega_3), Omega)[0]
     formula = -C * omega_3 / (A + C)
     return Problem(
@@ -114,7 +114,7 @@ def reaction_wheel(random: Random) -> Problem:
 
 
 def tilted_wheel(random: Random) -> Problem:
-    """A person on a turntable turns a spinning wheel over."""
+    """Return a problem that asks for the rate of a turntable on which a person turns a spinning wheel over."""
     before, after = C * omega_3, -C * omega_3
     (rate,) = solve(A * Omega + after - before, Omega)
     formula = 2 * C * omega_3 / A

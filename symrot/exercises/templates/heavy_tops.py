@@ -1,4 +1,4 @@
-"""Heavy symmetric tops: steady precession, energy, momenta, sleeping."""
+"""Exercises on heavy symmetric tops: steady precession, energy, momenta, sleeping (spinning upright)."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -28,14 +28,14 @@ PRECESSION = quantity(dphi, "0.5 1 2 3 4 5", "rad/s", "rate of precession")
 
 @cache
 def _lagrangian() -> tuple[Expr, Expr]:
-    """Return kinetic and potential energy of the top in the angles ZXZ."""
+    """Return the kinetic and the potential energy of a heavy symmetric top in ZXZ angles."""
     omega = rate_jacobian("ZXZ") * Matrix(angle_rates)
     return (omega.T * diag(A, A, C) * omega)[0] / 2, m * g * h * cos(theta)
 
 
 @cache
 def _condition() -> Expr:
-    """Return the condition of steady precession, an expression that is zero: the torque about the line of nodes.
+    """Return an expression that is zero in steady precession.
 
     It is Lagrange's equation of the nutation at a constant angle, divided by the sine of this angle.
     """
@@ -45,7 +45,7 @@ def _condition() -> Expr:
 
 
 def _is_possible(values: Mapping[Symbol, Expr]) -> bool:
-    """Return whether a body may have these moments; that across the axis includes the mass at its distance."""
+    """Return whether a body can have these moments; the transverse moment A about the tip contains ``m h^2``."""
     across = values.get(A, oo)
     return bool(across > values.get(m, 0) * values.get(h, 0) ** 2 + values.get(C, 0) / 2)
 
@@ -56,7 +56,7 @@ def _quantities(formula: Expr) -> tuple[Quantity, ...]:
 
 
 def spin_for_precession(random: Random) -> Problem:
-    """The spin that a steady precession needs."""
+    """Return a problem that asks for the spin of a top that a steady precession needs."""
     (spin,) = solve(_condition(), omega_3)
     formula = (m * g * h + A * dphi**2 * cos(theta)) / (C * dphi)
     return Problem(
@@ -80,7 +80,7 @@ def spin_for_precession(random: Random) -> Problem:
 
 
 def level_precession(random: Random) -> Problem:
-    """The precession of a top with a level axis."""
+    """Return a problem that asks for the precession of a top with a level axis."""
     level = _condition().subs(theta, pi / 2)
     (rate,) = solve(level, dphi)
     formula = m * g * h / (C * omega_3)
@@ -99,7 +99,7 @@ def level_precession(random: Random) -> Problem:
 
 
 def slowest_spin(random: Random) -> Problem:
-    """The least spin at which a steady precession is possible."""
+    """Return a problem that asks for the least spin at which a top can precess steadily."""
     discriminant = Poly(_condition(), dphi).discriminant()
     formula = 2 * sqrt(A * m * g * h * cos(theta)) / C
     return Problem(
@@ -122,7 +122,7 @@ def slowest_spin(random: Random) -> Problem:
 
 
 def sleeping_top(random: Random) -> Problem:
-    """The least spin of a sleeping top."""
+    """Return a problem that asks for the least spin at which a vertical (sleeping) top is stable."""
     discriminant = Poly(_condition().subs(theta, 0), dphi).discriminant()
     formula = 2 * sqrt(A * m * g * h) / C
     return Problem(
@@ -145,7 +145,7 @@ def sleeping_top(random: Random) -> Problem:
 
 
 def momentum_about_vertical(random: Random) -> Problem:
-    """The angular momentum about the vertical."""
+    """Return a problem that asks for the angular momentum of a top about the vertical."""
     kinetic, _ = _lagrangian()
     momentum = kinetic.diff(dphi).subs(dpsi, omega_3 - dphi * cos(theta))
     formula = A * dphi * sin(theta) ** 2 + C * omega_3 * cos(theta)
@@ -162,7 +162,7 @@ def momentum_about_vertical(random: Random) -> Problem:
 
 
 def energy_of_top(random: Random) -> Problem:
-    """The energy of a top in steady precession."""
+    """Return a problem that asks for the energy of a top in steady precession."""
     kinetic, potential = _lagrangian()
     energy = (kinetic + potential).subs({dtheta: 0, dpsi: omega_3 - dphi * cos(theta)})
     formula = A * dphi**2 * sin(theta) ** 2 / 2 + C * omega_3**2 / 2 + m * g * h * cos(theta)
@@ -181,7 +181,7 @@ def energy_of_top(random: Random) -> Problem:
 
 
 def slow_precession(random: Random) -> Problem:
-    """The slower of the two steady precessions."""
+    """Return a problem that asks for the slower of the two steady precessions of a top."""
     root = (C * omega_3 - sqrt(C**2 * omega_3**2 - 4 * A * m * g * h * cos(theta))) / (2 * A * cos(theta))
     return Problem(
         "The two precessions of a top",

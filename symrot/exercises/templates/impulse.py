@@ -1,4 +1,4 @@
-"""Impulses: blows on free bodies and on pendulums."""
+"""Exercises on impulses: blows on free bodies and on pendulums."""
 
 from collections.abc import Mapping
 from random import Random
@@ -26,7 +26,7 @@ LAW = r"The impulse changes the momentum by $J$, and the angular momentum about 
 
 
 def _rate() -> Expr:
-    """Return the rate of rotation of a struck rod."""
+    """Return the angular velocity of a free rod after a blow J at the distance d from its centre."""
     return solve(ROD * Omega - J * d, Omega)[0]
 
 
@@ -35,7 +35,7 @@ def _fits(values: Mapping[Symbol, Expr]) -> bool:
 
 
 def struck_rod(random: Random) -> Problem:
-    """The rate of rotation of a rod after a blow."""
+    """Return a problem that asks for the angular velocity of a free rod after a blow."""
     rate, formula = _rate(), 12 * J * d / (m * L**2)
     return Problem(
         "A rod that is struck",
@@ -52,7 +52,7 @@ def struck_rod(random: Random) -> Problem:
 
 
 def struck_place(random: Random) -> Problem:
-    """The speed of the place that is struck."""
+    """Return a problem that asks for the speed of the point of a rod that is struck."""
     speed, formula = J / m + _rate() * d, J * (L**2 + 12 * d**2) / (m * L**2)
     return Problem(
         "The place that is struck",
@@ -66,7 +66,7 @@ def struck_place(random: Random) -> Problem:
 
 
 def energy_of_blow(random: Random) -> Problem:
-    """The kinetic energy of a rod after a blow."""
+    """Return a problem that asks for the kinetic energy of a free rod after a blow."""
     energy = m * (J / m) ** 2 / 2 + ROD * _rate() ** 2 / 2
     formula = J**2 * (L**2 + 12 * d**2) / (2 * m * L**2)
     return Problem(
@@ -81,7 +81,7 @@ def energy_of_blow(random: Random) -> Problem:
 
 
 def resting_point(random: Random) -> Problem:
-    """The point of a rod that stays at rest just after a blow."""
+    """Return a problem that asks where on a rod the point is that stays at rest just after a blow."""
     (point,) = solve(J / m - _rate() * h, h)
     formula = L**2 / (12 * d)
     return Problem(
@@ -106,7 +106,7 @@ def resting_point(random: Random) -> Problem:
 
 
 def bullet_and_rod(random: Random) -> Problem:
-    """A bullet that stays in the end of a hanging rod."""
+    """Return a problem that asks for the rate of a hanging rod just after a bullet has stuck in its end."""
     about = solid("rod", mass=m_1).inertia_about((0, 0, L / 2))[0, 0]
     (rate,) = solve((about + m_2 * L**2) * Omega - m_2 * v * L, Omega)
     formula = 3 * m_2 * v / (L * (m_1 + 3 * m_2))
@@ -136,7 +136,7 @@ def bullet_and_rod(random: Random) -> Problem:
 
 
 def percussion_of_racket(random: Random) -> Problem:
-    """The centre of percussion of a rod that is held at its end."""
+    """Return a problem that asks for the distance of the centre of percussion from the hand that holds a rod."""
     about = solid("rod").inertia_about((0, 0, L / 2))[0, 0]
     place = about / (m * L / 2)
     formula = 2 * L / 3

@@ -1,4 +1,4 @@
-"""Moments and products of inertia: solids, parallel axes, composite bodies, principal axes."""
+"""Exercises on moments and products of inertia: solids, parallel axes, composite bodies, principal axes."""
 
 from random import Random
 
@@ -20,14 +20,14 @@ RADIUS = quantity(R, RADII, "mm", "radius")
 
 
 def _about(body: Solid, point: tuple[Expr, ...], axis: int, distance: Expr) -> tuple[Expr, tuple[Line, ...]]:
-    """Return the moment of a body about an axis through a point, and the lines of the parallel axis theorem."""
+    """Return a body's moment about an axis through a point, and the solution lines of the parallel axis theorem."""
     moment = body.inertia_about(point)[axis, axis]
     law = "The parallel axis theorem, from the centre of mass to the axis."
     return moment, chain("I_O", law, moment, written_sum(body.inertia[axis, axis], m * distance**2), moment, ADD)
 
 
 def rod_about_end(random: Random) -> Problem:
-    """A rod about its end."""
+    """Return a problem that asks for the moment of inertia of a rod about its end."""
     moment, lines = _about(solid("rod"), (0, 0, L / 2), 0, L / 2)
     return Problem(
         "A rod about its end",
@@ -40,7 +40,7 @@ def rod_about_end(random: Random) -> Problem:
 
 
 def rod_about_point(random: Random) -> Problem:
-    """A rod about a point between its centre and its end."""
+    """Return a problem that asks for the moment of inertia of a rod about a point between centre and end."""
     distance = L / random.choice((3, 4, 6))
     moment, lines = _about(solid("rod"), (0, 0, distance), 0, distance)
     return Problem(
@@ -72,7 +72,7 @@ def _by_integration(body: Solid) -> tuple[Expr, tuple[Line, ...]]:
 
 
 def solid_about_axis(random: Random) -> Problem:
-    """A body of revolution about its axis."""
+    """Return a problem that asks for the moment of inertia of a body of revolution about its axis."""
     body = solid(random.choice(SOLIDS))
     moment, lines = _by_integration(body)
     name = body.name.replace("_", " ")
@@ -87,7 +87,7 @@ def solid_about_axis(random: Random) -> Problem:
 
 
 def hollow_cylinder(random: Random) -> Problem:
-    """A tube with a thick wall about its axis."""
+    """Return a problem that asks for the moment of inertia of a thick-walled tube about its axis."""
     moment, lines = _by_integration(solid("hollow_cylinder"))
     return Problem(
         "A tube about its axis",
@@ -101,7 +101,7 @@ def hollow_cylinder(random: Random) -> Problem:
 
 
 def box_about_axis(random: Random) -> Problem:
-    """A box about an axis through its centre."""
+    """Return a problem that asks for the moment of inertia of a box about an axis through its centre."""
     moment, lines = _by_integration(solid("box"))
     return Problem(
         "A box about its axis",
@@ -114,7 +114,7 @@ def box_about_axis(random: Random) -> Problem:
 
 
 def box_about_edge(random: Random) -> Problem:
-    """A box that tips about an edge."""
+    """Return a problem that asks for the moment of inertia of a box about one of its edges."""
     body = solid("box")
     moment = body.inertia_about((a / 2, b / 2, 0))[2, 2]
     written = written_sum(body.inertia[2, 2], m * (a / 2) ** 2, m * (b / 2) ** 2)
@@ -129,7 +129,7 @@ def box_about_edge(random: Random) -> Problem:
 
 
 def disk_about_rim(random: Random) -> Problem:
-    """A disk about an axis through its rim, normal to it."""
+    """Return a problem that asks for the moment of inertia of a disk about a normal axis through its rim."""
     moment, lines = _about(solid("disk"), (R, 0, 0), 2, R)
     return Problem(
         "A disk that hangs from its rim",
@@ -142,7 +142,7 @@ def disk_about_rim(random: Random) -> Problem:
 
 
 def cone_about_apex(random: Random) -> Problem:
-    """A cone about an axis through its apex, across its own axis."""
+    """Return a problem that asks for the moment of inertia of a cone about a transverse axis through its apex."""
     body = solid("cone")
     moment = body.inertia_about((0, 0, h))[0, 0]
     written = written_sum(body.inertia[0, 0], m * (h - body.center_of_mass[2]) ** 2)
@@ -158,7 +158,7 @@ def cone_about_apex(random: Random) -> Problem:
 
 
 def rod_with_ball(random: Random) -> Problem:
-    """A rod with a ball at its end: a composite body."""
+    """Return a problem that asks for the moment of inertia of a rod with a ball at its end."""
     rod, ball = solid("rod", mass=m_1), solid("sphere", mass=m_2)
     parts = rod.inertia_about((0, 0, L / 2))[0, 0], ball.inertia_about((0, 0, L + R))[0, 0]
     moment = factor(sum(parts))
@@ -185,7 +185,7 @@ def rod_with_ball(random: Random) -> Problem:
 
 
 def drilled_disk(random: Random) -> Problem:
-    """A disk with a concentric hole, as a difference of two disks."""
+    """Return a problem that asks for the moment of inertia of a disk with a concentric hole."""
     rho = m / (R_2**2 - R_1**2)
     outer, inner = solid("disk", radius=R_2, mass=rho * R_2**2), solid("disk", radius=R_1, mass=rho * R_1**2)
     moment = factor(outer.inertia[2, 2] - inner.inertia[2, 2])
@@ -203,7 +203,7 @@ def drilled_disk(random: Random) -> Problem:
 
 
 def product_of_triangle(random: Random) -> Problem:
-    """The product of inertia of a right triangular plate about its right angle."""
+    """Return a problem that asks for the product of inertia of a right triangle about its right-angled corner."""
     plate = solid("triangular_plate", base=b, height=h, apex=0)
     center = plate.center_of_mass
     product = plate.inertia_about((0, 0, 0))[0, 1]
@@ -228,7 +228,7 @@ def product_of_triangle(random: Random) -> Problem:
 
 
 def product_of_two_masses(random: Random) -> Problem:
-    """The product of inertia of two small masses."""
+    """Return a problem that asks for the product of inertia of two small masses."""
     bodies = solid("point_masses", masses=(m_1, m_2), points=((a, b, 0), (-b, c, 0)))
     product = bodies.inertia_about((0, 0, 0))[0, 1]
     return Problem(
@@ -256,7 +256,7 @@ def product_of_two_masses(random: Random) -> Problem:
 
 
 def principal_moment(random: Random) -> Problem:
-    """The larger principal moment in the plane of a plate."""
+    """Return a problem that asks for the larger of the two principal moments in the plane of a plate."""
     tensor = Matrix([[I_xx, I_xy], [I_xy, I_yy]])
     moment = (I_xx + I_yy) / 2 + sqrt((I_xx - I_yy) ** 2 + 4 * I_xy**2) / 2
     values = tensor.eigenvals(multiple=True)
@@ -285,7 +285,7 @@ def principal_moment(random: Random) -> Problem:
 
 
 def radius_of_gyration(random: Random) -> Problem:
-    """The radius of gyration of a rod about its end."""
+    """Return a problem that asks for the radius of gyration of a rod about its end."""
     moment = solid("rod").inertia_about((0, 0, L / 2))[0, 0]
     radius = sqrt(moment / m)
     return Problem(

@@ -1,4 +1,4 @@
-"""Linkages: crank and slider, four bars, Scotch yoke."""
+"""Exercises on linkages: crank and slider, Scotch yoke, ladder."""
 
 from random import Random
 
@@ -20,12 +20,12 @@ ENGINE = (
 
 
 def _piston() -> Expr:
-    """Return the distance of the piston from the axis of the crank."""
+    """Return the distance of the piston from the axis of the crank, as a function of the crank angle."""
     return r * cos(phi) + sqrt(L**2 - r**2 * sin(phi) ** 2)
 
 
 def piston_speed(random: Random) -> Problem:
-    """The velocity of the piston."""
+    """Return a problem that asks for the velocity of the piston that a crank drives."""
     velocity = _piston().diff(phi) * Omega
     formula = -Omega * r * sin(phi) * (1 + r * cos(phi) / sqrt(L**2 - r**2 * sin(phi) ** 2))
     return Problem(
@@ -41,7 +41,7 @@ def piston_speed(random: Random) -> Problem:
 
 
 def acceleration_at_dead_centre(random: Random) -> Problem:
-    """The acceleration of the piston at the far dead centre."""
+    """Return a problem that asks for the acceleration of a piston at the dead centre far from the crank."""
     acceleration = (_piston().diff(phi, 2) * Omega**2).subs(phi, 0)
     formula = -(Omega**2) * r * (1 + r / L)
     return Problem(
@@ -57,7 +57,7 @@ def acceleration_at_dead_centre(random: Random) -> Problem:
 
 
 def rod_rate(random: Random) -> Problem:
-    """The rate of the connecting rod."""
+    """Return a problem that asks for the angular velocity of the connecting rod of a crank and piston."""
     angle = asin(r * sin(phi) / L)
     rate = angle.diff(phi) * Omega
     formula = Omega * r * cos(phi) / sqrt(L**2 - r**2 * sin(phi) ** 2)
@@ -74,7 +74,7 @@ def rod_rate(random: Random) -> Problem:
 
 
 def crank_torque(random: Random) -> Problem:
-    """The torque on the crank that balances a force on the piston."""
+    """Return a problem that asks for the torque on a crank that balances a force on the piston."""
     torque = -F_x * _piston().diff(phi)
     formula = F_x * r * sin(phi) * (1 + r * cos(phi) / sqrt(L**2 - r**2 * sin(phi) ** 2))
     return Problem(
@@ -91,7 +91,7 @@ def crank_torque(random: Random) -> Problem:
 
 
 def scotch_yoke(random: Random) -> Problem:
-    """The acceleration of a Scotch yoke."""
+    """Return a problem that asks for the acceleration of a Scotch yoke."""
     acceleration = (r * cos(phi)).diff(phi, 2) * Omega**2
     return Problem(
         "A Scotch yoke",
@@ -113,7 +113,7 @@ def scotch_yoke(random: Random) -> Problem:
 
 
 def ladder(random: Random) -> Problem:
-    """The rate of a ladder that slides down a wall."""
+    """Return a problem that asks for the angular velocity of a ladder that slides down a wall."""
     place = L * cos(theta)
     speed = Symbol("v", positive=True)
     rate = speed / place.diff(theta)

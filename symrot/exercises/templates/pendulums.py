@@ -1,4 +1,4 @@
-"""Pendulums: small swings, fall from a height, reduced length."""
+"""Exercises on pendulums: small oscillations, and falls from the level position."""
 
 from random import Random
 
@@ -17,12 +17,15 @@ HANGS = "A thin uniform rod of mass $m$ and length $L$ swings about its upper en
 
 
 def _stiffness(distance: Expr) -> Expr:
-    """Return the second derivative of the potential energy of a pendulum at its lowest position."""
+    """Return the second derivative of a pendulum's potential energy by its angle, at the lowest position.
+
+    ``distance`` is the distance of the centre of mass from the axis.
+    """
     return (-m * g * distance * cos(theta)).diff(theta, 2).subs(theta, 0)
 
 
 def period_of_rod(random: Random) -> Problem:
-    """The period of small swings of a rod about its end."""
+    """Return a problem that asks for the period of small swings of a rod about its end."""
     square = ROD / _stiffness(L / 2)
     formula = 2 * pi * sqrt(2 * L / (3 * g))
     return Problem(
@@ -45,7 +48,7 @@ def period_of_rod(random: Random) -> Problem:
 
 
 def period_of_disk(random: Random) -> Problem:
-    """The period of small swings of a disk or a ring about its rim."""
+    """Return a problem that asks for the period of small swings of a disk or a ring about its rim."""
     name = random.choice(("disk", "ring"))
     square = solid(name).inertia_about((R, 0, 0))[2, 2] / _stiffness(R)
     formula = 2 * pi * sqrt(square)
@@ -65,7 +68,7 @@ def period_of_disk(random: Random) -> Problem:
 
 
 def falling_rod(random: Random) -> Problem:
-    """The rate of a rod that falls from the level position."""
+    """Return a problem that asks for the angular velocity of a rod that falls from the level position."""
     rate = sqrt(m * g * L / ROD)
     formula = sqrt(3 * g / L)
     return Problem(
@@ -88,7 +91,7 @@ def falling_rod(random: Random) -> Problem:
 
 
 def start_of_fall(random: Random) -> Problem:
-    """The acceleration of the free end of a rod at its release."""
+    """Return a problem that asks for the angular acceleration of a level rod at the moment of its release."""
     acceleration = m * g * (L / 2) / ROD
     formula = Rational(3, 2) * g / L
     return Problem(

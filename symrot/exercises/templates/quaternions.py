@@ -1,4 +1,4 @@
-"""Quaternions: product, rotation of a vector, rates."""
+"""Exercises on quaternions: product, rotation of a vector, rates."""
 
 from random import Random
 
@@ -21,7 +21,7 @@ def _numbers(symbols: tuple[Symbol, ...], numbers: str = NUMBERS) -> tuple[Quant
 
 
 def product(random: Random) -> Problem:
-    """A component of a product of quaternions."""
+    """Return a problem that asks for a component of a product of quaternions."""
     place = random.randrange(4)
     component = quaternion_product(second_quaternion, quaternion)[place]
     name = f"r_{place}"
@@ -45,13 +45,13 @@ def product(random: Random) -> Problem:
 
 
 def _by_vectors(p: tuple[Symbol, ...], q: tuple[Symbol, ...]) -> Matrix:
-    """Return the product by scalar and vector parts."""
+    """Return the product of two quaternions, computed from their scalar and vector parts."""
     u, v = Matrix(p[1:]), Matrix(q[1:])
     return Matrix([p[0] * q[0] - u.dot(v), *(p[0] * v + q[0] * u + u.cross(v))])
 
 
 def norm_of_product(random: Random) -> Problem:
-    """The norm of a product is the product of the norms."""
+    """Return a problem that asks for the norm of a product of two quaternions."""
     square = sum(component**2 for component in quaternion_product(second_quaternion, quaternion))
     formula = sqrt(sum(p**2 for p in second_quaternion)) * sqrt(sum(q**2 for q in quaternion))
     return Problem(
@@ -70,7 +70,7 @@ def norm_of_product(random: Random) -> Problem:
 
 
 def component_of_rotation(random: Random) -> Problem:
-    """A quaternion of an axis and an angle."""
+    """Return a problem that asks for a component of the quaternion of a rotation with given axis and angle."""
     place = random.choice((0, 3))
     q = quaternion_of_axis_angle((0, 0, 1), alpha)
     formula = cos(alpha / 2) if place == 0 else sin(alpha / 2)
@@ -85,7 +85,7 @@ def component_of_rotation(random: Random) -> Problem:
 
 
 def rotated_vector(random: Random) -> Problem:
-    """An entry of the rotation matrix of a quaternion, by rotating a unit vector."""
+    """Return a problem that asks for a component of a unit vector that is rotated by a quaternion."""
     row, column = random.choice([(i, j) for i in range(3) for j in range(3)])
     unit = [0, *(int(n == column) for n in range(3))]
     rotated = quaternion_product(quaternion, unit, conjugate(quaternion))[row + 1].expand()
@@ -104,7 +104,7 @@ def rotated_vector(random: Random) -> Problem:
 
 
 def rate_of_component(random: Random) -> Problem:
-    """A rate of a quaternion."""
+    """Return a problem that asks for the time derivative of a quaternion component, given omega."""
     place = random.randrange(4)
     rate = (quaternion_rates("body") * Matrix((omega_1, omega_2, omega_3)))[place]
     product_of = quaternion_product(quaternion, (0, omega_1, omega_2, omega_3))[place] / 2
@@ -133,7 +133,7 @@ def rate_of_component(random: Random) -> Problem:
 
 
 def angle_between(random: Random) -> Problem:
-    """The angle between two attitudes that are quaternions."""
+    """Return a problem that asks for the cosine of half the angle between two attitudes, given as quaternions."""
     relative = quaternion_product(conjugate(second_quaternion), quaternion)[0]
     return Problem(
         "The angle between two quaternions",
@@ -146,7 +146,7 @@ def angle_between(random: Random) -> Problem:
 
 
 def twice_the_angle(random: Random) -> Problem:
-    """The square of a quaternion has twice the angle."""
+    """Return a problem that asks for the scalar part of a squared quaternion, which rotates by twice the angle."""
     half = quaternion_of_axis_angle((0, 0, 1), alpha)
     square = quaternion_product(half, half)[0]
     return Problem(

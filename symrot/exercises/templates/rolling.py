@@ -1,4 +1,4 @@
-"""Rolling without slipping: inclines, contact, friction."""
+"""Exercises on rolling without slipping: inclines, contact, friction."""
 
 from random import Random
 
@@ -20,7 +20,7 @@ def _body(random: Random) -> tuple[str, Expr]:
 
 
 def _motion(moment: Expr) -> tuple[Expr, Expr]:
-    """Return acceleration and friction of a body that rolls down an incline."""
+    """Return the acceleration and the friction force of a body that rolls down an incline."""
     equations = (m * a_x - m * g * sin(alpha) + F_x, moment * a_x / R - F_x * R)
     motion = solve(equations, (a_x, F_x), dict=True)[0]
     return motion[a_x], motion[F_x]
@@ -33,7 +33,7 @@ LAW = (
 
 
 def acceleration_on_incline(random: Random) -> Problem:
-    """The acceleration of a body that rolls down an incline."""
+    """Return a problem that asks for the acceleration of a body that rolls down an incline."""
     name, moment = _body(random)
     acceleration, friction = _motion(moment)
     ratio = (acceleration / (g * sin(alpha))).cancel()
@@ -57,7 +57,7 @@ def acceleration_on_incline(random: Random) -> Problem:
 
 
 def least_friction(random: Random) -> Problem:
-    """The coefficient of friction that prevents slipping."""
+    """Return a problem that asks for the smallest friction coefficient at which a body rolls without slipping."""
     name, moment = _body(random)
     _, friction = _motion(moment)
     ratio = (friction / (m * g * sin(alpha))).cancel()
@@ -76,7 +76,7 @@ def least_friction(random: Random) -> Problem:
 
 
 def speed_at_bottom(random: Random) -> Problem:
-    """The speed after rolling down a height."""
+    """Return a problem that asks for the speed of a body that has rolled down an incline of given height."""
     name, moment = _body(random)
     energy = m * v_x**2 / 2 + moment * (v_x / R) ** 2 / 2
     ratio = ((m * g * h) / (energy / v_x**2) / (g * h)).cancel()
@@ -101,7 +101,7 @@ def speed_at_bottom(random: Random) -> Problem:
 
 
 def share_of_rotation(random: Random) -> Problem:
-    """The share of the kinetic energy that is in the rotation."""
+    """Return a problem that asks for the share of rotation in the kinetic energy of a rolling body."""
     name, moment = _body(random)
     rotation = moment * (v_x / R) ** 2 / 2
     share = (rotation / (rotation + m * v_x**2 / 2)).cancel()
@@ -123,7 +123,7 @@ def share_of_rotation(random: Random) -> Problem:
 
 
 def cue_height(random: Random) -> Problem:
-    """The height at which a cue hits a ball so that it rolls at once."""
+    """Return a problem that asks for the height at which a cue hits a ball so that it rolls at once."""
     moment = solid("sphere").inertia[2, 2]
     height = R + moment / (m * R)
     formula = 7 * R / 5
@@ -140,7 +140,7 @@ def cue_height(random: Random) -> Problem:
 
 
 def top_of_wheel(random: Random) -> Problem:
-    """The speed of the top of a wheel that rolls."""
+    """Return a problem that asks for the speed of the top of a wheel that rolls."""
     formula = 2 * R * omega_3
     return Problem(
         "The top of a wheel",

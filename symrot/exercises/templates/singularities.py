@@ -1,4 +1,4 @@
-"""Gimbal lock: where it is, and what happens near it."""
+"""Exercises on gimbal lock: where it occurs, and what happens near it."""
 
 from random import Random
 
@@ -13,7 +13,7 @@ SEQUENCES = ("ZXZ", "ZYX", "XYZ", "YXY", "YZX", "XZX")
 
 
 def determinant(random: Random) -> Problem:
-    """The determinant of the rate matrix."""
+    """Return a problem that asks for the determinant of the matrix from Euler angle rates to omega."""
     sequence = random.choice(SEQUENCES)
     matrix = rate_jacobian(sequence)
     value = normal_form(matrix.determinant)
@@ -30,7 +30,7 @@ def determinant(random: Random) -> Problem:
 
 
 def growth_near_lock(random: Random) -> Problem:
-    """The rate of precession that a fixed angular velocity causes near the lock."""
+    """Return a problem that asks for the rate of the first angle that a fixed omega causes near gimbal lock."""
     sequence, at = random.choice((("ZXZ", 0), ("ZYX", 90)))
     omega = Matrix((omega_1, omega_2, omega_3))
     rate = normal_form((rate_jacobian(sequence).inv() * omega)[0].subs({psi: 0}))
@@ -55,7 +55,7 @@ def growth_near_lock(random: Random) -> Problem:
 
 
 def only_sum_of_angles(random: Random) -> Problem:
-    """In the lock only the sum of the first and third angle has a meaning."""
+    """Return a problem on gimbal lock that asks for a matrix entry: only the sum of two angles occurs in it."""
     matrix = dcm("ZXZ", (phi, Integer(0), psi))
     entry = cos(phi + psi)
     return Problem(
@@ -77,7 +77,7 @@ def only_sum_of_angles(random: Random) -> Problem:
 
 
 def angle_of_lock(random: Random) -> Problem:
-    """The smallest second angle, zero or more, at which a sequence locks."""
+    """Return a problem that asks for the smallest nonnegative second angle at which a sequence locks."""
     sequence = random.choice(SEQUENCES)
     determinant_of = normal_form(rate_jacobian(sequence).determinant)
     lock = min((root for root in solve(determinant_of, theta) if root >= 0), key=lambda root: root)

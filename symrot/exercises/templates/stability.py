@@ -1,4 +1,4 @@
-"""Stability of rotation about the principal axes."""
+"""Exercises on the stability of rotations about the principal axes."""
 
 from collections.abc import Mapping
 from random import Random
@@ -24,7 +24,7 @@ LAW = (
 
 
 def _factor(axis: int) -> Expr:
-    """Return mu of x'' = mu x for a small component across a principal axis."""
+    """Return mu in ``x'' = mu x``, the equation of a small disturbance x of a rotation about a principal axis."""
     rates = euler_equations(torque=None)
     one, two = (n for n in range(3) if n != axis)
     jacobian = Matrix([[rates[i].diff(OMEGA[j]) for j in (one, two)] for i in (one, two)])
@@ -37,7 +37,7 @@ def _ordered(values: Mapping[Symbol, Expr]) -> bool:
 
 
 def growth_rate(random: Random) -> Problem:
-    """The rate at which a disturbance of a rotation about the intermediate axis grows."""
+    """Return a problem that asks how fast a disturbance of a rotation about the intermediate axis grows."""
     square = _factor(1)
     written = Omega**2 * (A - B) * (B - C) / (A * C)
     formula = Omega * sqrt((A - B) * (B - C) / (A * C))
@@ -81,17 +81,17 @@ def _swing(axis: int, which: str) -> Problem:
 
 
 def swing_about_largest(random: Random) -> Problem:
-    """The rate of small swings about the axis of the largest moment."""
+    """Return a problem that asks for the rate of small oscillations about the axis of the largest moment."""
     return _swing(0, "largest")
 
 
 def swing_about_smallest(random: Random) -> Problem:
-    """The rate of small swings about the axis of the smallest moment."""
+    """Return a problem that asks for the rate of small oscillations about the axis of the smallest moment."""
     return _swing(2, "smallest")
 
 
 def thrown_book(random: Random) -> Problem:
-    """The growth of a disturbance of a book that is thrown with a spin about its intermediate axis."""
+    """Return a problem that asks for the growth rate of a disturbance of a book that spins about its middle axis."""
     inertia = solid("box").inertia
     moments = {A: inertia[0, 0], B: inertia[1, 1], C: inertia[2, 2]}
     square = _factor(1).subs(moments, simultaneous=True)

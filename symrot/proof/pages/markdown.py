@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from symrot.proof.page import Figure, Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
-__all__ = ["display", "host_safe", "markdown"]
+__all__ = ["display", "host_safe", "inline", "markdown"]
 
 MANY_SECTIONS = 8
 
@@ -47,6 +47,11 @@ def host_safe(part: str) -> str:
     if part.startswith("$$"):
         return part
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
+
+
+def inline(text: str) -> str:
+    """Return Markdown of :func:`markdown` in which inline formulas are between plain dollar signs, as in notebooks."""
+    return re.sub(r"\$`([^`]+)`\$", r"$\1$", text)
 
 
 def _contents(page: Page) -> Iterator[str]:

@@ -262,7 +262,10 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as a call, evaluated disc by disc; with logarithms of sizes, fewer become infinite."""
+        """Return the same bounds as a call, evaluated disc by disc.
+
+        Logarithms of sizes are used, so that fewer bounds are infinite.
+        """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:

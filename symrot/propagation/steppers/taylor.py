@@ -64,7 +64,7 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return the allowed size of the last terms of a series, and the part of the span a step must cover to use it all.
+    """Return the allowed size of a series' last terms, and the share of the span from which a step may use all of it.
 
     For a shorter step the size is multiplied by the power 7/4 of the ratio of the step to that part of the span: errors
     of single steps add up about as the number of steps to this power. The final error then hardly depends on the span.

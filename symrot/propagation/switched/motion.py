@@ -27,7 +27,7 @@ from symrot.propagation.steppers.integration_stopped import IntegrationStopped, 
 from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
 from symrot.propagation.switched.run import Chunk, SwitchedRun
 from symrot.propagation.switched.system import SwitchedSystem
-from symrot.scene.scene import Initial
+from symrot.scene.tables import Initial
 
 __all__ = ["SwitchedMotion", "SwitchedPropagator"]
 

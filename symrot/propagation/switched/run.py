@@ -469,7 +469,9 @@ class SwitchedRun(RunState):
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
-                self.t, f"the motion slides along {self._names_of_held()}, but nearby motions lead away", self.end
+                self.t,
+                f"the motion slides along {self._names_of_held()}, but nearby motions lead away from it",
+                self.end,
             )
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
@@ -499,7 +501,10 @@ class SwitchedRun(RunState):
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
-                    self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end
+                    self.t,
+                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for "
+                    "functions of a sign, such as sign and step, not for floor and mod",
+                    self.end,
                 )
         for other in asleep - self._asleep():
             self._wake(other)
@@ -547,7 +552,11 @@ class SwitchedRun(RunState):
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
-            raise IntegrationStopped(self.t, "a motion that slides along a switch has more than one past", self.end)
+            raise IntegrationStopped(
+                self.t,
+                "a motion that slides along a switch cannot be followed backward: it has more than one past",
+                self.end,
+            )
         mode, _ = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
@@ -605,7 +614,7 @@ class SwitchedRun(RunState):
             raise IntegrationStopped(
                 self.t,
                 f"the motion would slide along {self._names_of_held()}, but not in exactly one way: "
-                "none or several sliding motions fit",
+                "the equations have no such motion, or several",
                 self.end,
             ) from None
 
@@ -650,7 +659,10 @@ class SwitchedRun(RunState):
             if float(np.abs(rest).max()) <= PARALLEL * size:
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
-                    self.t, f"the motion would slide along {functions}, but not in exactly one way", self.end
+                    self.t,
+                    f"the motion would slide along {functions}, but not in exactly one way: the equations do not "
+                    f"determine the value of {self._name(mode)}",
+                    self.end,
                 )
 
     def _count(self) -> None:

@@ -23,3 +23,31 @@ def test_a_wrong_identity_of_complex_numbers_is_false(claim):
 def test_a_letter_i_may_be_a_quantity():
     assert symrot.check("i = 3").verdict == "definition"
     assert symrot.check("i*(a + b) == i*a + i*b").notes == ()
+
+
+@pytest.mark.parametrize("claim", [
+    "|z|² = x² + y² where z = x + iy", "z̄ z = |z|² where z = x + iy", "z^* z = x^2 + y^2, z = x + i y",
+    "Re(e^(iθ)) = cos θ", "Im(e^(iθ)) = sin θ", r"\Re(e^{i\theta}) = \cos\theta", r"\mathrm{Im}(e^{i\theta}) = \sin\theta",
+    r"\overline{e^{i\theta}} = e^{-i\theta}", "conj(e^(iθ)) = e^(-iθ)", "z + z̄ = 2 x where z = x + i y",
+    "1/z = (x - iy)/(x^2+y^2) where z = x + iy", "z^2 = x^2 - y^2 + 2ixy where z = x+iy", "Re(1+2i) = 1",
+    "Re(z) = x where z = x + iy", "z = x + iy, |z|^2 = x^2+y^2",
+])  # fmt: skip
+def test_parts_conjugates_and_sizes_of_complex_numbers_are_known(claim):
+    assert symrot.check(claim).verdict == "true"
+
+
+@pytest.mark.parametrize("claim", [
+    "Im(e^(iθ)) = cos θ", "Re(z) = y where z = x + iy", "z - z̄ = 2 y where z = x + i y", "|z|² = x² - y² where z = x + iy",
+    r"\overline{e^{i\theta}} = e^{i\theta}", "|a + i b| = a + b", "z^2 = x^2 + y^2 + 2ixy where z = x+iy",
+])  # fmt: skip
+def test_wrong_parts_of_complex_numbers_are_false(claim):
+    assert symrot.check(claim).verdict == "false"
+
+
+def test_the_size_of_a_number_in_polar_form_needs_a_radius():
+    assert symrot.check("z = r e^(iθ), |z| = r").requires == ("r >= 0",)
+
+
+def test_a_line_beside_complex_numbers_stays_an_equation_of_real_numbers():
+    assert symrot.check("z = x + i y, |z|^2 = x^2 + y^2, sin(2 a) = 2 sin a cos a").verdict == "true"
+    assert symrot.check("x_i = a + i b").verdict == "definition"

@@ -1,0 +1,1 @@
+"""The pictures, tables and formulas by which a notebook shows the values of symrot."""

@@ -1,0 +1,33 @@
+"""Verdicts on claims, and names of formulas, as tables of HTML."""
+
+from html import escape
+
+from symrot.checker.verdict import Identification, Verdict
+from symrot.notebook.fragments import Markup, table
+
+__all__ = ["identification", "verdict"]
+
+COLOURS = {"true": "#1a7f37", "recognised": "#1a7f37", "false": "#cf222e", "doubtful": "#cf222e"}
+OTHER_COLOUR = "#9a6700"
+
+
+def verdict(one: Verdict) -> str:
+    """Return a verdict in its colour, with everything it says; repairs have their changed pieces marked."""
+    repairs = iter(one.repairs)
+    rows: list[tuple[str, str]] = []
+    for name, text in one.facts():
+        if name in ("instead", "true instead"):
+            repair = next(repairs)
+            rows.append((name, Markup(f"<code>{repair.html}</code> {escape(repair.note)}")))
+        elif name in ("claim", "read as"):
+            rows.append((name, Markup(f"<code>{escape(text)}</code>")))
+        else:
+            rows.append((name, text))
+    colour = COLOURS.get(one.verdict, OTHER_COLOUR)
+    return f"<p style='margin:0.4em 0;color:{colour}'><strong>{one.verdict}</strong></p>" + table(rows)
+
+
+def identification(one: Identification) -> str:
+    """Return the name of a formula, and where symrot derives it."""
+    rows = [("formula", str(one)), ("derived in", one.source)]
+    return table(rows)

@@ -1,0 +1,309 @@
+"""Changes of a scene: the place in its content that a key names, and the content with other values there.
+
+A key is a path in the scene file, such as ``body.mass`` or ``torque[0].weight``, or a short name: part of the initial
+state (``omega``, ``omega_2``, ``attitude``), of the span (``t``, ``samples``), the ``tolerance``, a constant of the
+inertia (``I_xx``, ``principal``) or of a torque (``weight``, ``torque2_weight``, ``center_of_mass_3``, a parameter of
+its formulas), or a dimension, the mass or the density of a body that is one shape. Constants have the same names in
+plans and ensembles. Standard library only.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from fractions import Fraction
+from itertools import islice
+from typing import Any, NamedTuple
+
+from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
+from symrot.scene.body import Body
+from symrot.scene.content import Content, plain
+from symrot.scene.reader import nearest
+from symrot.scene.torque import Torque
+
+__all__ = ["changed", "replaces_shapes"]
+
+Path = tuple[str | int, ...]
+
+TABLES = ("schema", "title", "source", "body", "initial", "torque", "span", "output", "accuracy")
+SHORT: dict[str, Path] = {
+    "omega": ("initial", "omega"),
+    "omega_space": ("initial", "omega_space"),
+    "attitude": ("initial", "attitude"),
+    "t": ("span", "t"),
+    "samples": ("span", "samples"),
+    "tolerance": ("accuracy", "tolerance"),
+    "quantities": ("output", "quantities"),
+    "sequence": ("output", "sequence"),
+    "degrees": ("output", "degrees"),
+}
+EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
+    ("initial", "omega"): "omega_space",
+    ("initial", "omega_space"): "omega",
+    ("body", "mass"): "density",
+    ("body", "density"): "mass",
+    ("torque", "weight"): "gravity",
+    ("torque", "gravity"): "weight",
+}
+"""Table and key of a value -> the key of the same table that the value replaces."""
+
+RATES = ("omega_1", "omega_2", "omega_3")
+TENSOR = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
+INDEX = {"x": 0, "y": 1, "z": 2}
+NO_DIMENSIONS = ("shape", "part", "principal", "inertia", "about", "fixed_point", "name")
+
+_STEP = re.compile(r"([A-Za-z0-9_-]+)|\[(\d{1,6})\]")
+_PREFIXED = re.compile(r"torque(\d{1,4})_(\w+)")
+
+
+class Place(NamedTuple):
+    """A place in the content of a scene, and the component (from 0) if the key names one number of a vector."""
+
+    path: Path
+    component: int | None = None
+
+
+class _Scene(NamedTuple):
+    """The content of a scene to be changed, and the exact values that were read from this content."""
+
+    content: Content
+    omega_b: Sequence[Fraction]
+    body: Body
+    torques: Sequence[Torque]
+
+
+def changed(
+    content: Content,
+    changes: Mapping[str, Any],
+    omega_b: Sequence[Fraction],
+    body: Body,
+    torques: Sequence[Torque],
+) -> Content:
+    """Return the content of a scene with other values at the places that the keys of ``changes`` name.
+
+    Parameters
+    ----------
+    content : dict
+        The content of the scene, which is not modified.
+    changes : mapping
+        Key -> value, as a scene file or a Python caller writes it.
+    omega_b, body, torques
+        Initial angular velocity, body and torques that were read from the content, for the components of vectors that
+        a change leaves as they are.
+
+    Raises
+    ------
+    InputError
+        If a key names nothing in the scene, or several things.
+    """
+    result = deepcopy(content)
+    for key, value in changes.items():
+        scene = _Scene(result, omega_b, body, torques)
+        _set(scene, key, plain(value, f"{key}: "))
+    return result
+
+
+def replaces_shapes(key: str) -> bool:
+    """Return whether a key changes moments or centre of mass, so that they no longer follow from the shapes."""
+    return key in (*TENSOR, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
+
+
+def _set(scene: _Scene, key: str, value: Any) -> None:
+    if key in TENSOR or key == "principal":
+        _set_inertia(scene, key, value)
+        return
+    place = _place(scene, key)
+    if place.component is not None:
+        vector = [*_vector(scene, place.path)]
+        vector[place.component] = value
+        value = vector
+    if place.path[0] == "torque" and place.path[-1] == "center_of_mass" and scene.body.center_of_mass is not None:
+        scene.content["body"] = _moments(scene, _entries(_tensor(scene))) | {"center_of_mass": value}
+        return
+    parent, last = _table(scene.content, place.path[:-1], key), place.path[-1]
+    if isinstance(parent, dict):
+        parent.pop(EXCLUSIVE.get((place.path[0], last), ""), None)
+        parent[str(last)] = value
+    elif isinstance(last, int) and last < len(parent):
+        parent[last] = value
+    else:
+        raise InputError(f"{key}: expected an index from 0 to {len(parent) - 1}, got {last}")
+
+
+def _place(scene: _Scene, key: str) -> Place:
+    """Return the place in the scene's content that a key names; raise InputError if there is none or more than one."""
+    if not isinstance(key, str):
+        raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")
+    if key in SHORT:
+        return Place(SHORT[key])
+    if key in RATES:
+        return Place(("initial", "omega"), RATES.index(key))
+    path = _path(key)
+    if path[0] in TABLES:
+        return Place(path)
+    places = [*islice(_torque_places(scene, key), 1), *_body_places(scene, key)]
+    if len(places) == 1:
+        return places[0]
+    if places:
+        listed = " or ".join(map(_text, places))
+        raise InputError(f"{key}: expected a name of one value of the scene, got one of two; write {listed}")
+    known = [*TABLES[3:], *SHORT, *RATES, "principal", *TENSOR, *_names(scene)]
+    hint = nearest(key, known)
+    raise InputError(
+        f"{key}: expected a path such as body.mass, or one of {', '.join(known)}" + (f" ({hint})" if hint else "")
+    )
+
+
+def _path(key: str) -> Path:
+    """Return the steps of a path: ``torque[0].weight`` is ``("torque", 0, "weight")``."""
+    steps: list[str | int] = []
+    position = 0
+    for match in _STEP.finditer(key):
+        between = key[position : match.start()]
+        if between not in ("", ".") or (match[1] and steps and between != ".") or (match[2] and between):
+            break
+        steps.append(match[1] if match[1] else int(match[2]))
+        position = match.end()
+    if position != len(key) or not steps or isinstance(steps[0], int):
+        raise InputError(f"expected a name such as body.mass or torque[0].weight, got {show(key)}")
+    return tuple(steps)
+
+
+def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
+    """Yield each place of a torque's constant; if the key has no torque number, in the order of the torques."""
+    prefixed = _PREFIXED.fullmatch(key)
+    candidates = [(int(prefixed[1]) - 1, prefixed[2])] if prefixed else [(k, key) for k in range(_count(scene))]
+    for index, name in candidates:
+        if 0 <= index < _count(scene):
+            place = _torque_place(scene.content["torque"][index], index, name)
+            if place is not None:
+                yield place
+
+
+def _count(scene: _Scene) -> int:
+    return len(scene.content.get("torque", ()))
+
+
+def _torque_place(torque: Content, index: int, name: str) -> Place | None:
+    kind = torque["kind"]
+    if kind == TABLE_KIND.kind:
+        return None
+    if kind == "expression":
+        known = name in torque.get("parameters", {})
+        return Place(("torque", index, "parameters", name)) if known else None
+    fields = {field.name: field.shape for field in TORQUE_KINDS[kind].fields}
+    if name in fields:
+        return Place(("torque", index, name))
+    stem, _, number = name.rpartition("_")
+    if number in ("1", "2", "3") and "vector" in fields.get(stem, ""):
+        return Place(("torque", index, stem), int(number) - 1)
+    return None
+
+
+def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
+    body = scene.content["body"]
+    if key == "mass" and "part" not in body:
+        yield Place(("body", "mass"))
+    elif key == "density" and "shape" in body:
+        yield Place(("body", "density"))
+    elif key in body and key not in NO_DIMENSIONS and key not in SHORT:
+        yield Place(("body", key))
+
+
+def _names(scene: _Scene) -> list[str]:
+    """Return the short names of the constants of torques and of the body's dimensions, for an error message."""
+    names: list[str] = []
+    for torque in scene.content.get("torque", ()):
+        if torque["kind"] == "expression":
+            names += torque.get("parameters", {})
+        elif torque["kind"] != TABLE_KIND.kind:
+            names += [field.name for field in TORQUE_KINDS[torque["kind"]].fields]
+    names += [key for key in scene.content["body"] if key not in NO_DIMENSIONS]
+    return [*dict.fromkeys(names)]
+
+
+def _text(place: Place) -> str:
+    text = ""
+    for step in place.path:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
+    return text
+
+
+def _table(content: Content, path: Path, key: str) -> Any:
+    """Return the table or list at a path; a missing table is added."""
+    place: Any = content
+    for depth, step in enumerate(path):
+        if isinstance(step, int):
+            if not isinstance(place, list) or step >= len(place):
+                size = len(place) if isinstance(place, list) else 0
+                items = _text(Place(path[:depth]))
+                raise InputError(f"{key}: expected an index below {size}, the length of {items}, got {step}")
+            place = place[step]
+        elif isinstance(place, dict):
+            place = place.setdefault(step, {})
+        else:
+            raise InputError(f"{key}: expected a table at {_text(Place(path[:depth]))}, got {show(place)}")
+    if not isinstance(place, dict | list):
+        raise InputError(f"{key}: expected a table at {_text(Place(path))}, got {show(place)}")
+    return place
+
+
+def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
+    """Return the components of a vector of a scene: from its content if listed there, otherwise as they were read."""
+    place: Any = scene.content
+    if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
+        path = ("body", "center_of_mass")
+    for step in path:
+        place = place[step] if isinstance(step, int) else place.get(step) if isinstance(place, dict) else None
+    if isinstance(place, list) and len(place) == 3:
+        return place
+    if path == ("initial", "omega"):
+        return scene.omega_b
+    index, field = path[1], path[2]
+    return scene.torques[int(index)].vector(str(field))
+
+
+def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
+    """Replace the body by a body with one other moment of inertia, but the same mass and centre of mass."""
+    if key == "principal":
+        if not scene.body.principal.given_axes:
+            raise InputError(
+                "principal: expected a body given along its principal axes, got a body with products of inertia; "
+                f"change {', '.join(TENSOR)}"
+            )
+        inertia: Content = {"principal": value}
+    else:
+        tensor = _tensor(scene)
+        i, j = (INDEX[axis] for axis in key[-2:])
+        tensor[i][j] = tensor[j][i] = value
+        inertia = _entries(tensor)
+    scene.content["body"] = _moments(scene, inertia)
+
+
+def _moments(scene: _Scene, inertia: Content) -> Content:
+    """Return the content of a body that is given by its moments of inertia instead of its shapes."""
+    body, content = scene.body, scene.content["body"]
+    moments: Content = {**inertia, "about": body.about, "name": content.get("name", "")}
+    if body.mass is not None:
+        moments["mass"] = body.mass
+    if body.about == "fixed_point" and body.center_of_mass is not None:
+        moments["center_of_mass"] = content.get("center_of_mass", list(body.center_of_mass))
+    return moments
+
+
+def _entries(tensor: list[list[Any]]) -> Content:
+    return {"inertia": {name[-2:]: tensor[INDEX[name[-2]]][INDEX[name[-1]]] for name in TENSOR}}
+
+
+def _tensor(scene: _Scene) -> list[list[Any]]:
+    """Return the rows of the inertia tensor: from the content, with earlier changes, or computed from the shapes."""
+    match scene.content["body"]:
+        case {"principal": [a, b, c]}:
+            return [[a, 0, 0], [0, b, 0], [0, 0, c]]
+        case {"inertia": dict(entries)}:
+            xx, xy, xz, yy, yz, zz = (entries.get(key, 0) for key in ("xx", "xy", "xz", "yy", "yz", "zz"))
+            return [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        case {"inertia": [list(), list(), list()] as rows}:
+            return deepcopy(rows)
+    return [list(row) for row in scene.body.inertia]

@@ -1,0 +1,114 @@
+"""The content of a scene: the table of a scene file as plain values, made from Python values and printed as TOML.
+
+Standard library only. NumPy arrays and rotations of SciPy are recognised by their methods, so neither is imported.
+"""
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
+
+__all__ = ["Content", "plain", "toml_text"]
+
+Content = dict[str, Any]
+"""A table of a scene: text, numbers, true or false, lists and tables by key."""
+
+DEEPEST = 40
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def plain(value: Any, where: str, depth: int = 0) -> Any:
+    """Return a value as it would be in a scene file: arrays as lists, a rotation of SciPy as a quaternion.
+
+    Raises
+    ------
+    InputError
+        If tables and lists are nested more than :data:`DEEPEST` levels deep, or if a rotation holds several rotations.
+    """
+    if depth > DEEPEST:
+        raise InputError(f"{where.removesuffix(': ')}: expected at most {DEEPEST} levels of tables and lists, got more")
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, where, depth + 1) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, where, depth + 1) for item in value]
+    if hasattr(value, "as_quat") and hasattr(value, "as_matrix"):
+        return {"quaternion": _scalar_first(value, where)}
+    if hasattr(value, "tolist") and hasattr(value, "dtype"):
+        return plain(value.tolist(), where, depth + 1)
+    return value
+
+
+def _scalar_first(rotation: Any, where: str) -> list[float]:
+    quaternion = rotation.as_quat().tolist()
+    if len(quaternion) != 4 or isinstance(quaternion[0], list):
+        raise InputError(f"{where.removesuffix(': ')}: expected one rotation, got {len(quaternion)}; write rotation[0]")
+    x, y, z, w = quaternion
+    return [w, x, y, z]
+
+
+def toml_text(content: Content) -> str:
+    """Return the TOML text of a scene; numbers keep their exact values."""
+    lines: list[str] = []
+    _write_table(content, "", lines)
+    return "\n".join(lines).strip() + "\n"
+
+
+def _write_table(content: Content, name: str, lines: list[str]) -> None:
+    """Append the lines of a table: its values first, then its tables and its lists of tables."""
+    later = [key for key, value in content.items() if _is_section(key, value, name)]
+    lines += [f"{_key(key)} = {_value(value)}" for key, value in content.items() if key not in later]
+    for key in later:
+        path = f"{name}.{_key(key)}" if name else _key(key)
+        tables = content[key] if isinstance(content[key], list) else [content[key]]
+        for item in tables:
+            lines += ["", f"[[{path}]]" if isinstance(content[key], list) else f"[{path}]"]
+            _write_table(item, path, lines)
+
+
+def _is_section(key: str, value: Any, name: str) -> bool:
+    """Return whether a value is written below a header: a table at the top, or a list of tables such as torques."""
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(item, dict) for item in value)
+    return isinstance(value, dict) and not name
+
+
+def _key(key: str) -> str:
+    return key if _BARE_KEY.fullmatch(key) else _quoted(key)
+
+
+def _quoted(text: str) -> str:
+    escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t"}
+    return '"' + "".join(escapes.get(c, c if c.isprintable() else f"\\U{ord(c):08x}") for c in text) + '"'
+
+
+def _value(value: Any) -> str:
+    """Return a value as TOML on one line; a fraction becomes exact text, which scenes accept as a number."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return _quoted(value)
+        case Fraction():
+            return str(value.numerator) if value.denominator == 1 else _quoted(str(value))
+        case int():
+            return str(value)
+        case float() if isfinite(value):
+            return _decimal(Decimal(value))
+        case Decimal() if value.is_finite():
+            return _decimal(value)
+        case list():
+            return "[" + ", ".join(map(_value, value)) + "]"
+        case dict():
+            return "{ " + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + " }"
+    raise InputError(f"expected a value that TOML can hold, got {show(value)}")
+
+
+def _decimal(value: Decimal) -> str:
+    """Return the exact decimal digits of a number, with a point or an exponent, so that TOML reads a float."""
+    text = str(value).replace("E", "e").replace("e+", "e")
+    return text if any(mark in text for mark in ".e") else f"{text}.0"
