@@ -80,6 +80,10 @@ class Store(Protocol):
 
     header: Header
 
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; empty if the values are there."""
+
     def pending(self) -> list[tuple[int, int]]:
         """Return the ranges of the chunks that are missing."""
 
@@ -95,8 +99,8 @@ class Store(Protocol):
     def table(self, name: str) -> NDArray[Any] | None:
         """Return an array of statistics, or None if there is none with this name."""
 
-    def finish(self, tables: list[Table], without_values: bool) -> None:
-        """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
 
 
 def header_of(job: Job, rows: int | None = None) -> Header:

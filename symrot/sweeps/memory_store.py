@@ -37,6 +37,11 @@ class MemoryStore:
         self._arrays[STATUS] = np.full(header.count, NOT_COMPUTED, dtype=np.int8)
         self._arrays[MESSAGE] = np.full(header.count, "", dtype=object)
 
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; the values are there while a sweep runs."""
+        return ""
+
     def pending(self) -> list[tuple[int, int]]:
         """Return the ranges of the chunks that are missing."""
         return [each for each in self.header.ranges() if self._arrays[STATUS][each[0]] == NOT_COMPUTED]
@@ -59,10 +64,10 @@ class MemoryStore:
         """Return whether the values of an array are there."""
         return name in self._arrays
 
-    def finish(self, tables: list[Table], without_values: bool) -> None:
-        """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
         self.tables = tables
-        if without_values:
+        if alone:
             for variable in self.header.variables:
                 self._arrays.pop(variable.name, None)
 

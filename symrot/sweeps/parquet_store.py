@@ -71,6 +71,11 @@ class ParquetStore:
     def _file(self, start: int) -> Path:
         return self.path / f"part-{start:012d}.parquet"
 
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; the values are there while a sweep runs."""
+        return ""
+
     def pending(self) -> list[tuple[int, int]]:
         """Return the ranges of the chunks that are missing."""
         return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
@@ -140,12 +145,12 @@ class ParquetStore:
         """Return whether the values of an array are there; the components of attitudes are columns of their own."""
         return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
 
-    def finish(self, tables: list[Table], without_values: bool) -> None:
-        """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
             write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
-        if without_values:
+        if alone:
             raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
 
     def dataset(self) -> Any:

@@ -19,7 +19,7 @@ from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import read_design
-from symrot.sweeps.layout import MESSAGE, STATUS, Header, Store, header_of
+from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
 from symrot.sweeps.memory_store import MemoryStore
 from symrot.sweeps.outputs import read_outputs, scene_for
 from symrot.sweeps.parquet_store import ParquetStore
@@ -38,6 +38,7 @@ FINAL_STATE = ("omega@end",)
 BLOCK = 1_000_000
 MOST_WORKERS = 1024
 SHOWN_REASONS = 3
+LARGEST_IN_MEMORY = 4_000_000_000  # bytes of results without a file
 
 
 def _silent(text: str) -> None:
@@ -226,8 +227,14 @@ def sweep(
     texts = [outputs] if isinstance(outputs, str) else list(outputs)
     job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
     header = header_of(job, chunk)
+    if target is None:
+        _require_memory(header)
     store: Store = MemoryStore(header) if target is None else STORES[target.suffix.lower()](target, header)
-    if not (keep == "statistics" and getattr(store, "finished", False)):
+    alone = repr(chosen) if keep == "statistics" else ""
+    if store.alone:
+        _require_same(store.alone, alone, target)
+        store.finish([], alone)  # removes values that a process that was stopped left
+    else:
         pending = store.pending()
         done = header.count - sum(stop - start for start, stop in pending)
         if progress is not None:
@@ -239,7 +246,7 @@ def sweep(
                 progress(done, header.count)
         outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
-        store.finish(tables, keep == "statistics")
+        store.finish(tables, alone)
     return _result(store, target)
 
 
@@ -252,6 +259,24 @@ def _chunks(job: Job, pending: list[tuple[int, int]], workers: int, scheduler: s
 def _require(condition: bool, where: str, expectation: str, value: object) -> None:
     if not condition:
         raise InputError(f"{where}: expected {expectation}, got {show(value)}")
+
+
+def _require_same(present: str, statistics: str, path: Path | None) -> None:
+    if present != statistics:
+        raise InputError(
+            f"{path}: expected the same statistics and keep as before, because the values of the trajectories were "
+            "removed there; choose another name for other results"
+        )
+
+
+def _require_memory(header: Header) -> None:
+    """Raise InputError if the results of a sweep are too large for memory."""
+    sizes = [len(header.times) if TIME in variable.dimensions else 4 for variable in header.variables]
+    size = 8 * header.count * sum(sizes)
+    if size > LARGEST_IN_MEMORY:
+        raise InputError(
+            f"path: expected a file to write, such as out.zarr, for results of up to {size / 1e9:.1f} GB, got none"
+        )
 
 
 def _whole(value: object, where: str, most: int) -> None:

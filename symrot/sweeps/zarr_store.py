@@ -34,7 +34,7 @@ from symrot.sweeps.optional import optional
 
 __all__ = ["ZarrStore"]
 
-IDENTITY, ROWS, FINISHED = "symrot_sweep", "symrot_rows", "symrot_finished"
+IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finished", "symrot_statistics_alone"
 
 
 class ZarrStore:
@@ -134,12 +134,18 @@ class ZarrStore:
         """Whether statistics were written already."""
         return bool(self._group.attrs.get(FINISHED, False))
 
-    def finish(self, tables: list[Table], without_values: bool) -> None:
-        """Add the statistics; ``without_values`` removes the values of the outputs afterwards."""
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; empty if the values are there."""
+        return str(self._group.attrs.get(REMOVED, ""))
+
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
         for table in tables:
             _add(self._group, table)
         self._group.attrs[FINISHED] = True
-        if without_values:
+        if alone:
+            self._group.attrs[REMOVED] = alone  # before the first array is removed
             self._open.clear()
             for variable in self.header.variables:
                 if variable.name in self._group:

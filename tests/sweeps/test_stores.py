@@ -145,6 +145,13 @@ def test_statistics_alone_leave_no_values(tmp_path):
     assert result.count == 40 and "omega_1" not in result.to_xarray() and not (path / "omega_1").exists()
 
 
+@pytest.mark.parametrize("options", [{"statistics": "mean", "keep": "statistics"}, {"statistics": "envelope"}, {}])
+def test_values_that_were_removed_are_not_taken_for_results(tmp_path, options):
+    sweep(path=tmp_path / "a.zarr", statistics="envelope", keep="statistics")
+    with pytest.raises(InputError, match="the values of the trajectories were removed there"):
+        sweep(path=tmp_path / "a.zarr", **options)
+
+
 COMMAND = (
     "import sys, symrot; from tests.sweeps.scenes import sweep; sys.stdout.reconfigure(line_buffering=True);"
     "sweep(path=sys.argv[1], count=2000, chunk=20, workers=int(sys.argv[2]), progress=lambda done, total: print(done))"

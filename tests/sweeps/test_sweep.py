@@ -134,6 +134,7 @@ def test_statistics_are_those_of_all_values(whole):
         ({"t": [[0.0]]}, "t: expected times"),
         ({"path": "a.csv"}, "ends in .zarr, .parquet"),
         ({"path": "nowhere/a.zarr"}, "existing folder"),
+        ({"count": 1e9}, "path: expected a file to write"),
         ({"vary": [1]}, "vary: expected a dict"),
     ],
 )
