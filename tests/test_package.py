@@ -31,6 +31,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"results"},
     {"closed_form", "propagation"},
     {"ensemble"},
+    {"sweeps"},
     {"viewer"},
     {"figures"},
     {"lessons"},
