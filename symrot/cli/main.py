@@ -16,6 +16,7 @@ import symrot
 from symrot.cli import certify as cli_certify
 from symrot.cli import exercises as cli_exercises
 from symrot.cli import scenes as cli_scenes
+from symrot.cli import sweeps as cli_sweeps
 from symrot.cli.output import (
     FAILED,
     INTERRUPTED,
@@ -484,6 +485,7 @@ def _doctor_arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "show": ("write a page that plays a scene and lets the reader change it", _show, _show_arguments),
+    **cli_sweeps.COMMANDS,
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
