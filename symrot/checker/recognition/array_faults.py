@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from symrot.checker.claim.tree import Node, number, product, replaced, walk
+from symrot.checker.claim.tree import Node, Path, number, product, replaced, walk
 from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
 from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
@@ -88,16 +88,21 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _factors(formula, numeric, letters)
 
 
+def _with(formula: Node, path: Path, node: Node) -> Node:
+    """Return a formula with another node at a path."""
+    return replaced(formula, path, lambda _: node)
+
+
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
     """Yield the squares of the matrices of a formula, and the matrices in place of their squares."""
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
             squared = Node("power", None, (node, number(2)))
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, lambda _, new=squared: new))
+            yield Edit("exponent", COST["exponent"], path, _with(formula, path, squared))
         elif node.kind == "power" and numeric.is_matrix(node.args[0]):
             base = node.args[0]
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, lambda _, new=base: new))
+            yield Edit("exponent", COST["exponent"], path, _with(formula, path, base))
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
@@ -107,7 +112,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
             made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
             cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
-            tree = replaced(formula, (*path, place), lambda _, new=made: new)
+            tree = _with(formula, (*path, place), made)
             yield Edit("active_passive_transpose", cost, (*path, place), tree)
 
 
@@ -121,7 +126,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             continue
         for factor in scalars:
             made = product([factor, node])
-            tree = flattened(replaced(formula, path, lambda _, new=made: new))
+            tree = flattened(_with(formula, path, made))
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 
