@@ -387,7 +387,8 @@ def claim_of_relation(
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
     moving_matrices = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
-    relation = relation[0], *(without_time(side, moving_matrices) for side in relation[1:])
+    sign, left, right = relation
+    relation = sign, without_time(left, moving_matrices), without_time(right, moving_matrices)
     bold = bold_matrices(relation[1:], {vector.name for vector in vectors}) | moving_matrices
     vectors = [vector for vector in vectors if vector.name not in bold]
     define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
