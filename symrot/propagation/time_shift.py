@@ -145,7 +145,7 @@ def clock(
 ) -> Callable[[float], tuple[Any, list[float]]]:
     """Return a function that takes an epoch, in s, and returns the rates and their parameters.
 
-        Time in these rates is counted from the epoch.
+    Time in these rates is counted from the epoch.
 
     ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
     ``start`` are arguments of :class:`ShiftedParameters`. ``make`` converts plan and kernel to the rates: to the
