@@ -132,6 +132,9 @@ MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?
 OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 """Words for quantities that are matrices."""
 
+OF_VECTORS = ("rotated vector", "vector part")
+"""Words for quantities that are vectors, which any letter may name."""
+
 MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
@@ -583,6 +586,8 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
     """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
+        words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector
     is_matrix_of_rows = named.formula.value == "Matrix" and len(matrix_entries(named.formula)) > MOST_COMPONENTS
     return None if words and is_matrix_of_rows and not {*words} & {*OF_MATRICES} else words
 
