@@ -5,7 +5,7 @@ for either order of a quaternion's components. Every name that is returned has b
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import islice, permutations, product
@@ -27,7 +27,7 @@ from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
 from symrot.checker.recognition.relations import OTHERS
-from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
@@ -208,9 +208,13 @@ def identified(
             yield identification
 
 
-def _changes(match: Identification) -> tuple[int, int]:
-    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one."""
-    return bool(match.how) + match.how.count(" and "), len(match.mapping)
+def _changes(match: Identification) -> tuple[int, int, int]:
+    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one.
+
+    Symbols with another first letter are counted last.
+    """
+    others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
+    return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
@@ -346,7 +350,6 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
     An order is plausible if few units contradict each other and many names are equal.
     """
-    orders = list(islice(permutations(others), MOST_TRIES))
     known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
 
     def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
@@ -357,7 +360,28 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
             sum(name[0].lower() != other[0].lower() for (name, _), (other, _) in pairs),
         )
 
-    return sorted(orders, key=differences)
+    return sorted(islice(permutations(_likeliest(atoms, others, known)), MOST_TRIES), key=differences)
+
+
+def _likeliest(
+    atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
+) -> list[Expr]:
+    """Return the symbols ``others`` in an order in which each unit, axis and first letter fits that of ``atoms``.
+
+    Equations with many symbols have more orders than can be tried.
+    """
+    rest, ordered = list(others), []
+    names = {known[atom][0] for atom in atoms}
+    for atom in atoms:
+        name, unit = known[atom]
+        axes = axes_of(name)
+        best = min(rest, key=lambda other: (
+            None not in (unit, known[other][1]) and unit != known[other][1], known[other][0] != name,
+            known[other][0] in names, known[other][0][0].lower() != name[0].lower(), bool(axes) and axes_of(known[other][0]) != axes,
+        ))  # fmt: skip
+        rest.remove(best)
+        ordered.append(best)
+    return ordered
 
 
 def unit_of(name: str) -> str | None:

@@ -57,7 +57,8 @@ def vectors() -> Iterator[Named]:
     tensor = Matrix(3, 3, [Symbol(f"I_{i}{j}", real=True) for i in "xyz" for j in "xyz"])
     yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
     spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
-    yield "torque on a gyroscope whose axis precesses", WHEEL, OMEGA.cross(symbols.C * spin)
+    precession = Matrix([Symbol(f"Omega_{axis}", real=True) for axis in "xyz"])
+    yield "torque on a gyroscope whose axis precesses", WHEEL, precession.cross(symbols.C * spin)
     yield from _along_axes()
     yield from _vector_parts()
     about_point = POSITION.cross(symbols.m * origin) + momentum
@@ -71,7 +72,9 @@ def _along_axes() -> Iterator[Named]:
     """Yield angular velocities and momenta as sums along unit vectors, which are the columns of a matrix."""
     vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
     momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
-    yield "angular momentum I omega along the principal axes", MOMENTUM, vectors * momentum
+    directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
+    for title, axes in (("the principal axes", vectors), ("the principal axes b_1, b_2, b_3", directions)):
+        yield f"angular momentum I omega along {title}", MOMENTUM, _as_scalar(axes * momentum)
     rates = Matrix(symbols.angle_rates)
     about_z = vectors.copy()
     about_z[:, 0] = Matrix([0, 0, 1])
@@ -80,6 +83,10 @@ def _along_axes() -> Iterator[Named]:
     for name in ("ZXZ", "ZYZ", "ZYX", "ZXY"):
         before = (euler.rate_jacobian(name).as_immutable() * rates).subs(symbols.psi, 0)
         yield f"angular velocity of {name} along the axes before its last rotation", RATES, vectors * before
+
+
+def _as_scalar(column: Matrix) -> Any:
+    return column[0] if len(column) == 1 else column
 
 
 def _vector_parts() -> Iterator[Named]:
