@@ -172,7 +172,7 @@ def _on_latex(
     from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation
 
-    assume = without_definitions(assume)
+    assume = without_definitions(assume, source)
     functions = functions_of_time(assume)
     readings = latex_readings(source, Names(functions=functions))
     return verdict_on_readings(

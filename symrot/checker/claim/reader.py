@@ -18,7 +18,14 @@ from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
-from symrot.checker.typed.words import UNITS, lost_power, pieces_of_word, shorthands, shorthands_of_letters, split_tokens
+from symrot.checker.typed.words import (
+    UNITS,
+    lost_power,
+    pieces_of_word,
+    shorthands,
+    shorthands_of_letters,
+    split_tokens,
+)
 from symrot.errors import InputError, complaint
 
 __all__ = [
@@ -207,7 +214,7 @@ class _Text:
         )
         hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
-        spelling = {name: word for name, word in typed.items() if word != name}
+        spelling = {name: word for name, word in typed.items() if word not in ("", name)}
         flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
         return Reading(
             finished,

@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from symrot.latex.tokens import GREEK, Token
+from symrot.latex.tokens import GREEK, Token, tokens
 
 __all__ = ["Shorthand", "shorthands", "without_definitions"]
 
@@ -88,10 +88,8 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
     """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; empty if the text has too few of them."""
     digits = {digit for _, number in numbered.values() for digit in number}
-    if _has_rate(pieces, digits) and len(numbered) > 1:
-        fewest = 1  # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
-    else:
-        fewest = FEWEST_NUMBERED
+    # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
+    fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
     numbers = {name: {number for function, number in numbered.values() if function == name} for name in ("cos", "sin")}
     if min(map(len, numbers.values())) < fewest:
         return {}
@@ -111,19 +109,22 @@ def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
         inner = pieces[place + 1 + grouped]
         after = place + 2 + 2 * grouped
         if piece.text == "\\dot" and _is_angle(inner) and pieces[after].text == "_":
-            if _subscript(pieces, after + 1) in RATES_OF_THREE and {*digits} <= {*RATES_OF_THREE}:
+            number = _subscript(pieces, after + 1)
+            if number and {number, *digits} <= {*RATES_OF_THREE}:
                 return True
     return False
 
 
-def without_definitions(hypotheses: Sequence[str]) -> list[str]:
-    r"""Return hypotheses without those that only say what a short form means: ``c\alpha = \cos\alpha``.
+def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
+    r"""Return hypotheses without those that only say what a short form in a claim means: ``c\alpha = \cos\alpha``.
 
     Examples
     --------
-    >>> without_definitions([r"c\alpha = \cos\alpha", "a > 0"])
+    >>> without_definitions([r"c\alpha = \cos\alpha", "a > 0"], r"s\alpha c\alpha = a")
     ['a > 0']
     """
+    if not shorthands(tokens(claim)):
+        return list(hypotheses)
     return [hypothesis for hypothesis in hypotheses if not _DEFINITION.fullmatch(hypothesis.strip().strip("$"))]
 
 

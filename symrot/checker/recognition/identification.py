@@ -273,7 +273,7 @@ def _matched(
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
-        if few and not _keeps_names(pairs):
+        if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
@@ -337,7 +337,10 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
     if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
         return
     choices = []
-    for row, atoms in groups.items():
+    own_names = {plain_name(as_text(atom)) for atom in own.atoms}
+    # symbols with the names of the known formula stay as they are while the orders of the others are tried
+    ordered_groups = sorted(groups.items(), key=lambda group: not {*map(as_text, group[1])} <= own_names)
+    for row, atoms in ordered_groups:
         names = {as_text(atom) for atom in atoms}
         ordered = sorted(mine[row], key=lambda atom: (as_text(atom) not in names, as_text(atom)))
         choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
@@ -371,16 +374,18 @@ def _likeliest(
     Equations with many symbols have more orders than can be tried.
     """
     rest, ordered = list(others), []
-    names = {known[atom][0] for atom in atoms}
+    names = {plain_name(known[atom][0]) for atom in atoms}
     for atom in atoms:
-        name, unit = known[atom]
+        name, unit = plain_name(known[atom][0]), known[atom][1]
         axes = axes_of(name)
-        best = min(rest, key=lambda other: (
-            None not in (unit, known[other][1]) and unit != known[other][1], known[other][0] != name,
-            known[other][0] in names, known[other][0][0].lower() != name[0].lower(), bool(axes) and axes_of(known[other][0]) != axes,
-        ))  # fmt: skip
-        rest.remove(best)
-        ordered.append(best)
+        costs = []
+        for place, other in enumerate(rest):
+            own, own_unit = plain_name(known[other][0]), known[other][1]
+            is_other_unit = None not in (unit, own_unit) and unit != own_unit
+            is_other_axis = bool(axes) and axes_of(own) != axes
+            is_other_letter = own[0].lower() != name[0].lower()
+            costs.append((is_other_unit, own != name, own in names, is_other_letter, is_other_axis, place))
+        ordered.append(rest.pop(min(costs)[-1]))
     return ordered
 
 

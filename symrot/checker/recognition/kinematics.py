@@ -16,7 +16,7 @@ from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import skew
 
-__all__ = ["rotations", "vectors"]
+__all__ = ["GYROSCOPE", "along_axes", "rotations", "vectors"]
 
 AXIS, ANGLE, SECOND_ANGLE = Matrix(symbols.axis), symbols.alpha, Symbol("beta", real=True)
 POSITION, OMEGA, ALPHA = Matrix(symbols.position), Matrix(symbols.omega_b), Matrix(symbols.omega_rates)
@@ -30,6 +30,8 @@ UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHE
     for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
                  "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel", "euler_body_rates")
 )  # fmt: skip
+
+GYROSCOPE = "torque on a gyroscope whose axis precesses"
 
 Named = tuple[str, str, Any]
 """Name, source and value of a formula."""
@@ -58,35 +60,13 @@ def vectors() -> Iterator[Named]:
     yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
     spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
     precession = Matrix([Symbol(f"Omega_{axis}", real=True) for axis in "xyz"])
-    yield "torque on a gyroscope whose axis precesses", WHEEL, precession.cross(symbols.C * spin)
-    yield from _along_axes()
+    yield GYROSCOPE, WHEEL, precession.cross(symbols.C * spin)
     yield from _vector_parts()
     about_point = POSITION.cross(symbols.m * origin) + momentum
     yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
     yield from _rates_of_the_matrix()
     yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
     yield "power of a torque", POWER, OMEGA.dot(Matrix(symbols.torque_b))
-
-
-def _along_axes() -> Iterator[Named]:
-    """Yield angular velocities and momenta as sums along unit vectors, which are the columns of a matrix."""
-    vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
-    momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
-    directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
-    for title, axes in (("the principal axes", vectors), ("the principal axes b_1, b_2, b_3", directions)):
-        yield f"angular momentum I omega along {title}", MOMENTUM, _as_scalar(axes * momentum)
-    rates = Matrix(symbols.angle_rates)
-    about_z = vectors.copy()
-    about_z[:, 0] = Matrix([0, 0, 1])
-    for axes, title in ((vectors, "the axes of the rotations"), (about_z, "the z axis and two axes")):
-        yield f"angular velocity of Euler angles along {title}", RATES, axes * rates
-    for name in ("ZXZ", "ZYZ", "ZYX", "ZXY"):
-        before = (euler.rate_jacobian(name).as_immutable() * rates).subs(symbols.psi, 0)
-        yield f"angular velocity of {name} along the axes before its last rotation", RATES, vectors * before
-
-
-def _as_scalar(column: Matrix) -> Any:
-    return column[0] if len(column) == 1 else column
 
 
 def _vector_parts() -> Iterator[Named]:
@@ -139,6 +119,29 @@ def _with_unit_axis(powers: Matrix) -> Matrix:
     """Return a matrix in which n n^T - 1 replaces the square of the skew matrix of the unit axis n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (powers + excess * eye(3)).applyfunc(expand)
+
+
+def along_axes() -> Iterator[Named]:
+    """Yield angular velocities and momenta as sums along unit vectors, which are the columns of a matrix."""
+    vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
+    momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
+    directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
+    for title, axes in (("the principal axes", vectors), ("the principal axes b_1, b_2, b_3", directions)):
+        yield f"angular momentum I omega along {title}", MOMENTUM, _as_scalar(axes * momentum)
+    rates = Matrix(symbols.angle_rates)
+    about_z = vectors.copy()
+    about_z[:, 0] = Matrix([0, 0, 1])
+    for axes, title in ((vectors, "the axes of the rotations"), (about_z, "the z axis and two axes")):
+        yield f"angular velocity of Euler angles along {title}", RATES, axes * rates
+    for name in ("ZXZ", "ZYZ", "ZYX", "ZXY"):
+        before = (euler.rate_jacobian(name).as_immutable() * rates).subs(symbols.psi, 0)
+        for axes in (vectors, directions):
+            title = f"angular velocity of {name} along the axes before its last rotation"
+            yield title, RATES, _as_scalar(axes * before)
+
+
+def _as_scalar(column: Matrix) -> Any:
+    return column[0] if len(column) == 1 else column
 
 
 def rotations() -> Iterator[Named]:

@@ -509,6 +509,8 @@ def _readings_of_formula(
         value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
         return ()
+    if is_matrix(value) and value.shape == (1, 1):
+        value = value[0]
     least = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least:
         return ()

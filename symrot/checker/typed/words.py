@@ -148,9 +148,7 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
     """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb``; none unless several angles have both of them."""
-    places = [
-        place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)
-    ]
+    places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
     if len(angles) < FEWEST_OF_LETTERS:
