@@ -160,8 +160,9 @@ def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):
-        if (_is_angle(piece) or piece.text == "q") and pieces[place + 1].text == "_":
-            numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, place + 2))
+        after = place + 1 + (pieces[place + 1].text == "}")  # the subscript of \dot{\theta}_1 follows the bracket
+        if (_is_angle(piece) or piece.text == "q") and pieces[after].text == "_":
+            numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, after + 1))
     if not numbered and not any(_is_angle(piece) for piece in pieces):
         return "theta"
     letters = [letter for letter, subscripts in numbered.items() if subscripts & {*digits}]
