@@ -164,7 +164,7 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a claim about the determinant of a rate Jacobian; otherwise None."""
     if claim.relation is None or claim.hypotheses:
         return None
-    from symrot.checker.recognition.determinants import verdict_on_determinant
+    from symrot.checker.context.determinants import verdict_on_determinant
 
     start = perf_counter()
     verdict = verdict_on_determinant(claim, repair)

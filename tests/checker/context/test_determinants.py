@@ -5,7 +5,7 @@ from sympy import Matrix
 
 import symrot
 from symrot import symbols
-from symrot.checker.recognition.determinants import determinants
+from symrot.checker.context.determinants import determinants
 from symrot.conventions import SEQUENCES
 from symrot.kinematics.euler import rate_jacobian
 
