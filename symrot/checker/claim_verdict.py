@@ -54,7 +54,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
-                named = _on_name(claim, repair, related_formula) or _on_relation(claim) or _on_expanded(claim, repair)
+                named = _on_determinant(claim, repair) or _on_name(claim, repair, related_formula)
+                named = named or _on_relation(claim) or _on_expanded(claim, repair)
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
@@ -156,6 +157,17 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
     start = perf_counter()
     verdict = verdict_on_relation(claim)
+    return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
+
+
+def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
+    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; otherwise None."""
+    if claim.relation is None or claim.hypotheses:
+        return None
+    from symrot.checker.context.determinants import verdict_on_determinant
+
+    start = perf_counter()
+    verdict = verdict_on_determinant(claim, repair)
     return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
 
 

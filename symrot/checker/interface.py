@@ -169,8 +169,10 @@ def _on_latex(
 ) -> Verdict:
     """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
     from symrot.checker.latex.reader import Names, latex_readings
+    from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation
 
+    assume = without_definitions(assume, source)
     functions = functions_of_time(assume)
     readings = latex_readings(source, Names(functions=functions))
     return verdict_on_readings(

@@ -73,10 +73,15 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
     """Return the names of vectors, in capital letters, that are in fact matrices, and whether each depends on time.
 
-    Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``.
+    Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``, or the
+    argument of a determinant or trace.
     """
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
+    for node in nodes:
+        name = str(node.args[0].value) if node.kind == "call" and node.value in ("det", "trace") else ""
+        if name[:1].isupper() and name in vectors and not is_tensor(name):
+            matrices[name] = False
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
             name = _name_of_array(first)

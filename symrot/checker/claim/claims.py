@@ -530,6 +530,7 @@ def _on_matrix(name: str) -> str:
 
 def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
     sign, left, right = relation
+    names = [name for name in names if not is_tensor(name)]
     return sign, with_scalar_products(left, names), with_scalar_products(right, names)
 
 

@@ -18,7 +18,14 @@ from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
-from symrot.checker.typed.words import UNITS, lost_power, pieces_of_word, shorthands, split_tokens
+from symrot.checker.typed.words import (
+    UNITS,
+    lost_power,
+    pieces_of_word,
+    shorthands,
+    shorthands_of_letters,
+    split_tokens,
+)
 from symrot.errors import InputError, complaint
 
 __all__ = [
@@ -207,7 +214,7 @@ class _Text:
         )
         hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
-        spelling = {name: word for name, word in typed.items() if word != name}
+        spelling = {name: word for name, word in typed.items() if word not in ("", name)}
         flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
         return Reading(
             finished,
@@ -226,12 +233,13 @@ class _Text:
         """Return the words that are several names (``mgl`` is m g l), sentences about them, and the doubtful words."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
+        short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
         alone = {*alone} | ({"x", "y", "z"} if any(token.text == "∫" for token in self.tokens) else set())
         first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
                 continue
-            if word in vectors or word in self.differentials:
+            if word in vectors or word in self.differentials or word in short:
                 continue
             if (power := lost_power(word)) and self.is_spaced_after(word):
                 doubt = Doubt(("power of function", start), word)

@@ -98,7 +98,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("steady precession rate", ("rate of steady precession", "steady precession"), ("steady precession",),
              "dphi|Omega|n", RATE),
     Quantity("spin", ("spin rate", "rate of spin", "angular velocity of spin"),
-             ("spin", "along the axis"), "dpsi|omega_3", RATE),
+             ("spin", "along the axis"), "dpsi|omega_3|p", RATE),
     Quantity("angular velocity along the axis", ("component of the angular velocity along the axis",),
              ("along the axis", "angular velocity"), "omega_3", RATE),
     Quantity("nutation rate", ("rate of nutation",), ("nutation",), "dtheta", RATE),

@@ -3,12 +3,13 @@ r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha
 They are read as functions only if the text has both a cosine and a sine in this form, and no c or s by itself.
 """
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from symrot.latex.tokens import GREEK, Token
+from symrot.latex.tokens import GREEK, Token, tokens
 
-__all__ = ["Shorthand", "shorthands"]
+__all__ = ["Shorthand", "shorthands", "without_definitions"]
 
 FUNCTIONS: tuple[Mapping[str, str], ...] = (
     {"c": "cos", "s": "sin", "v": "vers"},
@@ -18,6 +19,14 @@ FUNCTIONS: tuple[Mapping[str, str], ...] = (
 
 NO_ANGLES = ("pi", "omega", "Omega")
 """Greek letters that name no angle: the number, and rates."""
+
+RATES_OF_THREE = "123"
+"""The numbers of the angles of a sequence."""
+
+_DEFINITION = re.compile(
+    r"(?:(?:c|C)_?\{?(\\[A-Za-z]+)\}? *= *\\cos *[({ ]*\1[)} ]*|(?:s|S)_?\{?(\\[A-Za-z]+)\}? *= *\\sin *[({ ]*\2[)} ]*)"
+)
+"""A definition of a short form; its groups are the angle."""
 
 FEWEST_NUMBERED = 2
 """The fewest cosines and the fewest sines with numbers, as c_1 and c_2, that are evidently short forms."""
@@ -78,16 +87,45 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
     """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; empty if the text has too few of them."""
+    digits = {digit for _, number in numbered.values() for digit in number}
+    # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
+    fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
     numbers = {name: {number for function, number in numbered.values() if function == name} for name in ("cos", "sin")}
-    if min(map(len, numbers.values())) < FEWEST_NUMBERED:
+    if min(map(len, numbers.values())) < fewest:
         return {}
-    letter = _numbered_angle(pieces, {digit for _, number in numbered.values() for digit in number})
+    letter = _numbered_angle(pieces, {*digits, *RATES_OF_THREE} if fewest == 1 else digits)
     if not letter:
         return {}
     return {
         start: Shorthand(function, tuple(f"{letter}_{digit}" for digit in digits))
         for start, (function, digits) in numbered.items()
     }
+
+
+def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
+    r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, next to c_2 and s_3."""
+    for place, piece in enumerate(pieces[:-3]):
+        grouped = pieces[place + 1].text == "{"
+        inner = pieces[place + 1 + grouped]
+        after = place + 2 + 2 * grouped
+        if piece.text == "\\dot" and _is_angle(inner) and pieces[after].text == "_":
+            number = _subscript(pieces, after + 1)
+            if number and {number, *digits} <= {*RATES_OF_THREE}:
+                return True
+    return False
+
+
+def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
+    r"""Return hypotheses without those that only say what a short form in a claim means: ``c\alpha = \cos\alpha``.
+
+    Examples
+    --------
+    >>> without_definitions([r"c\alpha = \cos\alpha", "a > 0"], r"s\alpha c\alpha = a")
+    ['a > 0']
+    """
+    if not shorthands(tokens(claim)):
+        return list(hypotheses)
+    return [hypothesis for hypothesis in hypotheses if not _DEFINITION.fullmatch(hypothesis.strip().strip("$"))]
 
 
 def _after_power(pieces: Sequence[Token], place: int) -> int:
@@ -122,8 +160,9 @@ def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):
-        if (_is_angle(piece) or piece.text == "q") and pieces[place + 1].text == "_":
-            numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, place + 2))
+        after = place + 1 + (pieces[place + 1].text == "}")  # the subscript of \dot{\theta}_1 follows the bracket
+        if (_is_angle(piece) or piece.text == "q") and pieces[after].text == "_":
+            numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, after + 1))
     if not numbered and not any(_is_angle(piece) for piece in pieces):
         return "theta"
     letters = [letter for letter, subscripts in numbered.items() if subscripts & {*digits}]

@@ -5,7 +5,7 @@ for either order of a quaternion's components. Every name that is returned has b
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import islice, permutations, product
@@ -27,7 +27,7 @@ from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
 from symrot.checker.recognition.relations import OTHERS
-from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.units.units import conventional_unit
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
@@ -208,9 +208,13 @@ def identified(
             yield identification
 
 
-def _changes(match: Identification) -> tuple[int, int]:
-    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one."""
-    return bool(match.how) + match.how.count(" and "), len(match.mapping)
+def _changes(match: Identification) -> tuple[int, int, int]:
+    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one.
+
+    Symbols with another first letter are counted last.
+    """
+    others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
+    return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
@@ -269,7 +273,7 @@ def _matched(
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
-        if few and not _keeps_names(pairs):
+        if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
@@ -333,7 +337,10 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
     if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
         return
     choices = []
-    for row, atoms in groups.items():
+    own_names = {plain_name(as_text(atom)) for atom in own.atoms}
+    # symbols with the names of the known formula stay as they are while the orders of the others are tried
+    ordered_groups = sorted(groups.items(), key=lambda group: not {*map(as_text, group[1])} <= own_names)
+    for row, atoms in ordered_groups:
         names = {as_text(atom) for atom in atoms}
         ordered = sorted(mine[row], key=lambda atom: (as_text(atom) not in names, as_text(atom)))
         choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
@@ -346,7 +353,6 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 
     An order is plausible if few units contradict each other and many names are equal.
     """
-    orders = list(islice(permutations(others), MOST_TRIES))
     known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
 
     def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
@@ -357,7 +363,30 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
             sum(name[0].lower() != other[0].lower() for (name, _), (other, _) in pairs),
         )
 
-    return sorted(orders, key=differences)
+    return sorted(islice(permutations(_likeliest(atoms, others, known)), MOST_TRIES), key=differences)
+
+
+def _likeliest(
+    atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
+) -> list[Expr]:
+    """Return the symbols ``others`` in an order in which each unit, axis and first letter fits that of ``atoms``.
+
+    Equations with many symbols have more orders than can be tried.
+    """
+    rest, ordered = list(others), []
+    names = {plain_name(known[atom][0]) for atom in atoms}
+    for atom in atoms:
+        name, unit = plain_name(known[atom][0]), known[atom][1]
+        axes = axes_of(name)
+        costs = []
+        for place, other in enumerate(rest):
+            own, own_unit = plain_name(known[other][0]), known[other][1]
+            is_other_unit = None not in (unit, own_unit) and unit != own_unit
+            is_other_axis = bool(axes) and axes_of(own) != axes
+            is_other_letter = own[0].lower() != name[0].lower()
+            costs.append((is_other_unit, own != name, own in names, is_other_letter, is_other_axis, place))
+        ordered.append(rest.pop(min(costs)[-1]))
+    return ordered
 
 
 def unit_of(name: str) -> str | None:

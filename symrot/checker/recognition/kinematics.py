@@ -9,14 +9,14 @@ from functools import reduce
 from operator import add
 from typing import Any
 
-from sympy import Matrix, Symbol, cancel, cos, expand, eye, sin, solve, sqrt, trace
+from sympy import Matrix, Symbol, cancel, cos, diag, expand, eye, sin, solve, sqrt, trace
 
 from symrot import symbols
 from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import skew
 
-__all__ = ["rotations", "vectors"]
+__all__ = ["GYROSCOPE", "along_axes", "rotations", "vectors"]
 
 AXIS, ANGLE, SECOND_ANGLE = Matrix(symbols.axis), symbols.alpha, Symbol("beta", real=True)
 POSITION, OMEGA, ALPHA = Matrix(symbols.position), Matrix(symbols.omega_b), Matrix(symbols.omega_rates)
@@ -25,11 +25,13 @@ ENTRIES = Matrix(3, 3, symbols.rotation_entries)
 BELOW = ((2, 1), (0, 2), (1, 0))
 """The entries of a skew matrix that are the components of its vector."""
 WORDS = ("first", "second", "third")
-UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHEEL = (
+UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHEEL, RATES = (
     f"derivations/{name}.md"
     for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
-                 "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel")
+                 "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel", "euler_body_rates")
 )  # fmt: skip
+
+GYROSCOPE = "torque on a gyroscope whose axis precesses"
 
 Named = tuple[str, str, Any]
 """Name, source and value of a formula."""
@@ -57,12 +59,23 @@ def vectors() -> Iterator[Named]:
     tensor = Matrix(3, 3, [Symbol(f"I_{i}{j}", real=True) for i in "xyz" for j in "xyz"])
     yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
     spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
-    yield "torque on a gyroscope whose axis precesses", WHEEL, OMEGA.cross(symbols.C * spin)
+    precession = Matrix([Symbol(f"Omega_{axis}", real=True) for axis in "xyz"])
+    yield GYROSCOPE, WHEEL, precession.cross(symbols.C * spin)
+    yield from _vector_parts()
     about_point = POSITION.cross(symbols.m * origin) + momentum
     yield "angular momentum about a point away from the centre of mass", MOMENTUM, about_point
     yield from _rates_of_the_matrix()
     yield "kinetic energy of rotation from the angular momentum", ENERGY, OMEGA.dot(momentum) / 2
     yield "power of a torque", POWER, OMEGA.dot(Matrix(symbols.torque_b))
+
+
+def _vector_parts() -> Iterator[Named]:
+    """Yield the vector parts of a product of quaternions and of the rate of a quaternion."""
+    whole = Matrix(quaternion.quaternion_product(Q, symbols.second_quaternion))
+    yield "vector part of the quaternion product q p", PARAMETERS, whole[1:, 0]
+    for frame, omega in (("body", OMEGA), ("space", Matrix(symbols.omega_s))):
+        rates = Matrix(quaternion.quaternion_rates(frame) * omega)
+        yield f"vector part of the quaternion rates from omega in the {frame} frame", PARAMETERS, rates[1:, 0]
 
 
 def _rates_of_the_matrix() -> Iterator[Named]:
@@ -96,13 +109,39 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
     yield "axis and angle (Rodrigues' formula)", powers
     yield "axis and angle (Rodrigues' formula) with a unit axis", _with_unit_axis(powers)
     yield "a unit quaternion", Matrix(quaternion.quaternion_to_dcm(Q))
-    yield "a unit quaternion, q v q*", Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
+    homogeneous = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
+    yield "a unit quaternion, q v q*", homogeneous
+    by_scalar = (homogeneous + quaternion.unit_relation(Q) * eye(3)).applyfunc(expand)
+    yield "a unit quaternion by its scalar and vector parts", by_scalar
 
 
 def _with_unit_axis(powers: Matrix) -> Matrix:
     """Return a matrix in which n n^T - 1 replaces the square of the skew matrix of the unit axis n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (powers + excess * eye(3)).applyfunc(expand)
+
+
+def along_axes() -> Iterator[Named]:
+    """Yield angular velocities and momenta as sums along unit vectors, which are the columns of a matrix."""
+    vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
+    momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
+    directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
+    for title, axes in (("the principal axes", vectors), ("the principal axes b_1, b_2, b_3", directions)):
+        yield f"angular momentum I omega along {title}", MOMENTUM, _as_scalar(axes * momentum)
+    rates = Matrix(symbols.angle_rates)
+    about_z = vectors.copy()
+    about_z[:, 0] = Matrix([0, 0, 1])
+    for axes, title in ((vectors, "the axes of the rotations"), (about_z, "the z axis and two axes")):
+        yield f"angular velocity of Euler angles along {title}", RATES, axes * rates
+    for name in ("ZXZ", "ZYZ", "ZYX", "ZXY"):
+        before = (euler.rate_jacobian(name).as_immutable() * rates).subs(symbols.psi, 0)
+        for axes in (vectors, directions):
+            title = f"angular velocity of {name} along the axes before its last rotation"
+            yield title, RATES, _as_scalar(axes * before)
+
+
+def _as_scalar(column: Matrix) -> Any:
+    return column[0] if len(column) == 1 else column
 
 
 def rotations() -> Iterator[Named]:

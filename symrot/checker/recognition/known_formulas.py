@@ -16,7 +16,7 @@ from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 from symrot import catalogue, symbols
 from symrot.checker.recognition.bodies import bodies
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
-from symrot.checker.recognition.kinematics import rotations, vectors
+from symrot.checker.recognition.kinematics import GYROSCOPE, along_axes, rotations, vectors
 from symrot.checker.recognition.mechanics import one_axis, tops
 from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
@@ -46,7 +46,8 @@ class Known:
     """A formula that symrot derives, with its name, its source and its text.
 
     ``scaled``: a multiple of the formula has the same name. ``only_named``: it is a product of few symbols, such as
-    ``C*omega_3``, which is recognised only in a claim that names the quantity. ``is_relation``: the formula is the
+    ``C*omega_3``, or a sum of any vectors, which is recognised only in a claim that names the quantity, in the letters
+    that books use. ``is_relation``: the formula is the
     difference of the sides of an equation.
     """
 
@@ -258,12 +259,13 @@ def stated() -> Iterator[Named]:
         tops,
         _solved,
         vectors,
+        along_axes,
         rotations,
         bodies,
     ):
         for name, source, value in group():
             yield name, source, value
-            if getattr(value, "shape", None) in COMPONENTS:
+            if getattr(value, "shape", None) in COMPONENTS and group is not along_axes:
                 columns.append((name, source, value))
     for name, source, column in columns:
         for place, entry in zip(COMPONENTS[column.shape], column, strict=True):
@@ -306,6 +308,7 @@ def _selected(
     formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
 ) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
+    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
@@ -321,7 +324,7 @@ def _selected(
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
-        only_named = name in few and _is_monomial(entries[0])
+        only_named = (name in few and _is_monomial(entries[0])) or name in of_letters
         known = Known(name, source, text, scaled or is_relation, only_named, is_relation)
         yield relation_key(own.key(shape, range(len(entries))), is_relation), known
 

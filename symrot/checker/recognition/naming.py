@@ -19,7 +19,7 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.recognition.identification import identified, plain_name, unit_of
@@ -132,6 +132,9 @@ MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?
 OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 """Words for quantities that are matrices."""
 
+OF_VECTORS = ("rotated vector", "vector part")
+"""Words for quantities that are vectors, which any letter may name."""
+
 MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
@@ -163,6 +166,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         For a side that cannot be read.
     """
     _ = claim.equation  # refuses a side that cannot be read
+    if (mapped := _by_matrix(claim, named, repair)) is not None:
+        return mapped
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
@@ -184,6 +189,29 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)
+
+
+def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
+    """Return the verdict by the rate matrix in ``omega = [matrix] q_dot``, in which nothing gives q_dot components.
+
+    Return None for other claims, and if the matrix is no matrix of rates.
+    """
+    factors = named.formula.args if named.formula.kind == "product" else ()
+    is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
+    if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
+        return None
+    verdict = verdict_on_name(claim, named._replace(formula=factors[0]), repair)
+    if not any(re.search("rate Jacobian|rate matrix", known.name) for known in verdict.recognised_as):
+        return None
+    repairs = []
+    for edited in verdict.repairs:
+        side = product([read_relation(edited.text)[2], factors[1]])
+        repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
+    return replace(verdict, repairs=tuple(repairs))
+
+
+def _is_rate(tree: Node) -> bool:
+    return tree.kind == "call" and tree.value == "diff"
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
@@ -481,6 +509,8 @@ def _readings_of_formula(
         value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
         return ()
+    if is_matrix(value) and value.shape == (1, 1):
+        value = value[0]
     least = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < least:
         return ()
@@ -583,6 +613,8 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
     """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, _plain(named))), None)
+    if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
+        words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector
     is_matrix_of_rows = named.formula.value == "Matrix" and len(matrix_entries(named.formula)) > MOST_COMPONENTS
     return None if words and is_matrix_of_rows and not {*words} & {*OF_MATRICES} else words
 

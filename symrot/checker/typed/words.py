@@ -19,6 +19,7 @@ __all__ = [
     "lost_power",
     "pieces_of_word",
     "shorthands",
+    "shorthands_of_letters",
     "split_tokens",
 ]
 
@@ -135,9 +136,36 @@ class Shorthand(NamedTuple):
         )  # fmt: skip
 
 
+FEWEST_OF_LETTERS = 2
+"""The fewest angles with a Latin letter that have both a cosine and a sine in short form, such as ``ca`` and ``sa``."""
+
+ANGLES = {"a": "alpha", "b": "beta", "g": "gamma", "t": "theta", "p": "phi", "x": "x", "y": "y", "z": "z"}
+"""Latin letter of an angle in a short form -> the angle."""
+
+OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
+"""A cosine or sine in short form of an angle with a Latin letter, such as a for alpha."""
+
+
+def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
+    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb``; none unless several angles have both of them."""
+    places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
+    forms = {tokens[place].text for place in places}
+    angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
+    if len(angles) < FEWEST_OF_LETTERS:
+        return []
+    functions = {"c": "cos", "s": "sin"}
+    return [
+        Shorthand(place, 1, functions[tokens[place].text[0]], ANGLES[tokens[place].text[1]])
+        for place in places
+        if tokens[place].text[1] in angles
+    ]
+
+
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
     """Return the parts of a text that may be short for the cosine or sine of an angle, such as ``cθ``."""
-    short = []
+    short = shorthands_of_letters(tokens)
+    if short:
+        return short
     for place, token in enumerate(tokens[:-1]):
         letter, _, angle = token.text.partition("_")
         function = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}.get(letter)

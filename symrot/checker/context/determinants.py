@@ -1,0 +1,136 @@
+"""Claims about the determinant of a rate Jacobian: ``det T = -sin(theta)``, which says where the angles are singular.
+
+The determinant depends on the second angle alone, in the body frame and in the space frame. Its sign depends on the
+order in which the angles are listed, which such a claim does not say: either sign is recognised.
+"""
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice
+from typing import Any
+
+from sympy import Expr, Symbol, expand
+
+from symrot import symbols
+from symrot.checker.arrays.matrices import matrices_of_entries
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, single_edits
+from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
+from symrot.conventions import SEQUENCES
+from symrot.errors import InputError
+from symrot.exact.decide import decide
+from symrot.exact.printing import as_text
+from symrot.exact.ring.ratio import TooLarge
+from symrot.kinematics.euler import rate_jacobian
+
+__all__ = ["determinants", "verdict_on_determinant"]
+
+PHI, THETA, PSI = symbols.angles
+
+OTHER_MATRICES = re.compile(r"[RACQIUOP]\w*")
+"""Names of rotations, unit matrices and inertia tensors, whose determinants are other formulas."""
+
+SECOND_ANGLE = re.compile(r"(var)?theta(_?[2yn])?|Theta|beta|pitch|(q|alpha|phi|e)_?2")
+"""Names of the second of three Euler angles."""
+
+MOST_REPAIRS, MOST_SEQUENCES = 3, 4
+"""The most repairs of a claim, and the most sequences that are named for one formula."""
+
+USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
+"""The sequences that books use most, in this order; they are named first."""
+
+
+@cache
+def determinants() -> dict[str, Expr]:
+    """Return the determinant of the rate Jacobian of each sequence, the usual sequences first.
+
+    The first and last angle are zero, since the determinant does not depend on them.
+
+    Examples
+    --------
+    >>> determinants()["ZYZ"], determinants()["XYZ"]
+    (-sin(theta), cos(theta))
+    """
+    order = dict.fromkeys((*USUAL_SEQUENCES, *SEQUENCES))
+    return {name: expand(rate_jacobian(name).as_immutable().subs({PHI: 0, PSI: 0}).det()) for name in order}
+
+
+def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
+    """Return the verdict on ``det T = f(theta)``, in which nothing but the name says what T is; None for other claims.
+
+    It is "recognised" if f is the determinant of the rate Jacobian of a sequence, of the sequence that is stated if
+    there is one, and "doubtful" if one edit makes f such a determinant.
+    """
+    assert claim.relation is not None
+    generic = {*matrices_of_entries(claim.define)}
+    for own, formula in (claim.relation[1:], claim.relation[:0:-1]):
+        names = {str(node.value) for _, node in walk(formula) if node.kind == "name"} - {"pi"}
+        if not _is_determinant(own, generic) or len(names) != 1 or not SECOND_ANGLE.fullmatch(*names):
+            continue
+        (letter,) = names
+        if readings := _readings(claim, formula, letter):
+            return Verdict("recognised", recognised_as=readings)
+        return _edited(claim, own, formula, letter) if repair else None
+    return None
+
+
+def _is_determinant(tree: Node, generic: set[str]) -> bool:
+    """Return whether a tree is the determinant of a matrix that may be a rate Jacobian."""
+    return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
+        str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
+    )  # fmt: skip
+
+
+def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
+    """Return the determinants to which a formula is equal up to its sign, those of the usual sequences first."""
+    try:
+        value = claim.interpreter().read(formula)
+    except InputError:
+        return ()
+    return () if is_matrix(value) else tuple(islice(_equal(claim, value, letter), MOST_SEQUENCES))
+
+
+def _equal(claim: Claim, value: Any, letter: str) -> Iterator[Identification]:
+    stated = claim.context.sequence
+    for name, determinant in determinants().items():
+        if stated and name != stated:
+            continue
+        own = determinant.subs(THETA, Symbol(letter, real=True))
+        sign = next((sign for sign in (1, -1) if _is_equal(sign * own, value)), 0)
+        if sign:
+            how = "" if sign == 1 else "with the angles in the reverse order"
+            mapping = {} if letter == as_text(THETA) else {as_text(THETA): letter}
+            title = f"determinant of the {name} rate Jacobian, body or space frame"
+            yield Identification(title, how, mapping, f'symrot.rate_jacobian("{name}").det()')
+
+
+def _is_equal(first: Expr, second: Expr) -> bool:
+    try:
+        return decide(first, second).verdict == "true"
+    except (InputError, TooLarge):
+        return False
+
+
+def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
+    """Return the verdict "doubtful" if one edit of a formula makes it a determinant; otherwise None."""
+    numeric = NumericFilter(claim)
+    edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
+    repairs: dict[str, Repair] = {}
+    named: tuple[Identification, ...] = ()
+    for edit in sorted(edits, key=lambda edit: edit.cost):
+        repaired = f"{text(own)} == {text(edit.tree)}"
+        if repaired in repairs or not (readings := _readings(claim, edit.tree, letter)):
+            continue
+        repairs[repaired] = Repair(repaired, edit.code, edit.cost)
+        named = named or readings
+        if len(repairs) == MOST_REPAIRS:
+            break
+    if not repairs:
+        return None
+    first = next(iter(repairs.values()))
+    diagnosis = Diagnosis(first.code, FAULT_DESCRIPTIONS[first.code])
+    return Verdict("doubtful", diagnosis=diagnosis, repairs=tuple(repairs.values()), recognised_as=named)
