@@ -22,6 +22,9 @@ CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
 """Decimal numbers, and whole numbers that may be rounded: 37, but not 40, whose count of digits is unclear."""
 
+LONG_WHOLE = 3
+"""The fewest digits of a whole number to which a rational value may be rounded: 1 hp = 746 W."""
+
 TURN = 7
 """An angle of at least this number, without pi, is probably in degrees: a full turn is 6.28 rad."""
 
@@ -100,7 +103,8 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
             continue
         value = product([_in_si(other, factors), Node("inv", None, (factors[unit],))])
         is_percentage = measured.units[unit].text == "%"
-        if not is_decimal and not is_percentage and not _is_irrational(claim, value):
+        is_long = len(digits) >= LONG_WHOLE
+        if not is_decimal and not is_percentage and not is_long and not _is_irrational(claim, value):
             continue
         worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
         verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))

@@ -1,5 +1,6 @@
 """Claims with a rounded decimal number, such as ``1500*2*pi/60 == 157.08``: true if the value rounds to the number."""
 
+import re
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
@@ -21,7 +22,7 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
         return verdict
     source = claim.sources.get("claim", "")
     for number, value in (claim.relation[1:], claim.relation[:0:-1]):
-        digits = _decimal(number, source)
+        digits = _decimal(number, source) or _long_whole(number, source, value)
         if digits and not _decimal(value, source) and _is_constant(value):
             return _rounded(claim, verdict, value, digits, number.span)
     return verdict
@@ -46,6 +47,21 @@ def _decimal(node: Node, source: str) -> str:
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
     return sign + digits if inner.kind == "number" and "." in digits else ""
+
+
+def _long_whole(node: Node, source: str, value: Node) -> str:
+    """Return the digits of a whole number that is certainly rounded, such as 157 for ``1500*2*pi/60``; or "".
+
+    It has at least three digits, the last one not 0, and the value has pi, a root or a decimal number.
+    """
+    sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
+    digits = source[inner.span[0] : inner.span[1]]
+    is_rough = any(
+        part.value == "pi" or (part.kind == "call" and part.args) or
+        (part.kind == "number" and "." in source[part.span[0] : part.span[1]])
+        for _, part in walk(value)
+    )  # fmt: skip
+    return sign + digits if inner.kind == "number" and is_rough and re.fullmatch(r"[1-9]\d+[1-9]", digits) else ""
 
 
 def _is_constant(node: Node) -> bool:

@@ -1,5 +1,6 @@
 """The real and imaginary parts of formulas such as ``exp(i*x)``, as trees: equal formulas have equal parts."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
@@ -9,7 +10,7 @@ from typing import ClassVar
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError, complaint
 
-__all__ = ["imaginary_unit", "is_complex", "substituted", "with_parts"]
+__all__ = ["imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
 
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)
@@ -17,6 +18,10 @@ LETTERS = ("i", "j", "I")
 NUMBERS = ("z", "w", "zeta")
 """Names that are usually complex numbers."""
 
+PAIRS = ("xy", "ab", "cd", "uv", "pq")
+"""Letters that are usually the real and the imaginary part of one number, in a product or power of ``x + i*y``."""
+
+NUMBER = re.compile(rf"({'|'.join(NUMBERS)})(_?[0-9])?")
 BAR = "_bar"
 """Ending of the name of a conjugate."""
 
@@ -37,7 +42,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     A letter i or j in a sum ``x + i*y`` is the imaginary unit if the formulas have a part, the conjugate or the
     absolute value of a name or of a formula with this letter, or a name of a complex number, such as z.
     A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and
-    its conjugate, or if they have circular and hyperbolic functions and it is inside one of these.
+    its conjugate, or a power of ``x + i*y``, or if they have circular and hyperbolic functions and it is inside one of
+    these.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
@@ -70,8 +76,25 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
     has_parts = any(map(_has_factor, sums, repeat(letter))) and (
         bool(names & {*NUMBERS}) or any(map(_is_of_complex, nodes, repeat(letter)))
     )
-    is_evident = is_alone or has_both or has_conjugates or has_parts
+    pairs = {*map(frozenset, PAIRS)}
+    has_pairs = any(
+        _pair(part, letter) in pairs
+        for node in nodes
+        if node.kind in ("power", "product", "inv")
+        for part in node.args
+        if part.kind == "sum"
+    )
+    is_evident = is_alone or has_both or has_conjugates or has_parts or has_pairs
     return own if is_evident and not functions & {"diff", "Matrix"} else None
+
+
+def _pair(node: Node, letter: str) -> frozenset[str]:
+    """Return the names x and y of a sum ``x + i*y`` or ``x - i*y``; an empty set for any other sum."""
+    first, *rest = map(_without_sign, node.args)
+    if len(rest) != 1 or first.kind != "name" or rest[0].kind != "product" or len(rest[0].args) != 2:
+        return frozenset()
+    names = [str(factor.value) for factor in rest[0].args if factor.kind == "name"]
+    return frozenset({str(first.value), *names} - {letter}) if len(names) == 2 and letter in names else frozenset()
 
 
 def _has_factor(node: Node, letter: str) -> bool:
@@ -99,6 +122,32 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
     if tree.kind == "name" and (name := str(tree.value).removesuffix(BAR)) in numbers:
         return Node("call", "conjugate", (numbers[name],), tree.span)
     return replace(tree, args=tuple(substituted(child, numbers) for child in tree.args))
+
+
+def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
+    """Return the names of complex numbers without a definition, such as z in ``|z|^2 = z z_bar``, as ``Re_z + i*Im_z``.
+
+    A name such as z or w_1 is one if the formulas have the conjugate, the real or the imaginary part of such a name;
+    ``z_bar`` next to ``z`` is a conjugate if the formulas have an absolute value or a part. In formulas with integrals
+    or other bars it is the place of a centre.
+    """
+    nodes = [node for tree in formulas for _, node in walk(tree)]
+    names = [str(node.value) for node in nodes if node.kind == "name"]
+    calls = [node for node in nodes if node.kind == "call"]
+    own = {name for name in names if NUMBER.fullmatch(name)}
+    barred = {name.removesuffix(BAR) for name in names if name.endswith(BAR)}
+    if not barred <= own or any(node.value in ("integrate", "integral_over_body", "qmul", "Matrix") for node in calls):
+        return {}
+    inside = {node.value: {str(n.value) for _, n in walk(node.args[0])} for node in calls if node.value in OF_COMPLEX}
+    parts = set().union(*(names for call, names in inside.items() if call != "abs"))
+    is_evident = bool(own & parts) or (bool(barred) and bool(inside))
+    used = [name for name in names if name.removesuffix(BAR) in own]
+    if not is_evident or len(used) < 2:
+        return {}
+    return {
+        name: sum_of([Node("name", f"Re_{name}"), product([Node("name", letter), Node("name", f"Im_{name}")])])
+        for name in sorted(own)
+    }
 
 
 def _conjugate(node: Node, letter: str) -> Node:

@@ -381,7 +381,8 @@ def claim_of_relation(
     define = [*pauli, *define]
     notes = [*notes, *([ON_PAULI] if pauli else [])]
     unit = None if pauli else imaginary_unit([*relation[1:], *context])
-    if unit is not None and not is_complex(relation[1:], str(unit.value)):
+    is_vector = unit is not None and unit.value in {vector.name for vector in vectors}
+    if unit is not None and (is_vector or not is_complex(relation[1:], str(unit.value))):
         unit = None
     if unit is not None:
         relation = with_parts(relation, str(unit.value), source)
@@ -546,7 +547,9 @@ def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
     for vector in vectors:
         if is_tensor(vector.name):
             yield f"{vector.name} is a symmetric tensor with the entries {vector.name}_xx, {vector.name}_xy and so on"
-        if vector.is_axis:
+        if vector.place is not None:
+            yield f"{vector.name} is the unit vector of the {'xyz'[vector.place]} axis"
+        elif vector.is_axis:
             yield f"{vector.name} with a hat is the {vector.name} axis"
         elif vector.unit:
             yield f"{vector.name} has the length 1, as its hat says"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.complex_parts import imaginary_unit, substituted
+from symrot.checker.arrays.complex_parts import imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
 from symrot.checker.claim.reader import Chain, Reading
 from symrot.checker.claim.tree import Node, walk
@@ -63,23 +63,32 @@ def claims_of_reading(
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the names that lines such as ``z = x + i*y`` define as complex numbers, each with its formula."""
+    """Return the names of complex numbers, each with the formula that a line such as ``z = x + i*y`` gives it.
+
+    A complex number without such a line has a name for its real part and one for its imaginary part.
+    """
     unit = imaginary_unit(formulas)
     if unit is None:
-        return {}
+        return open_numbers(formulas)
     return {
         str(chain.sides[0].value): chain.sides[1]
         for chain in lines
         if len(lines) > 1 and chain.sides[0].kind == "name" and unit.value in {n.value for _, n in walk(chain.sides[1])}
-    }
+    } or open_numbers(formulas, str(unit.value))
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
     """Return, in order, the definitions on which the names ``used`` depend, directly or through other definitions."""
-    needed: list[tuple[str, Node]] = []
-    names = set(used)
-    for name, tree in reversed(define):
-        if name in names:
-            needed.insert(0, (name, tree))
-            names |= {str(node.value) for _, node in walk(tree) if node.kind == "name"}
-    return needed
+    inside = {name: {str(node.value) for _, node in walk(tree) if node.kind == "name"} for name, tree in define}
+    trees = dict(define)
+    needed: list[str] = []
+
+    def add(name: str, above: tuple[str, ...]) -> None:
+        for other in sorted(inside.get(name, set()) - {*above, name}):
+            add(other, (*above, name))
+        if name in trees and name not in needed:
+            needed.append(name)
+
+    for name in [name for name, _ in define if name in used]:
+        add(name, ())
+    return [(name, trees[name]) for name in needed]

@@ -124,7 +124,12 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
     if not claim.hypotheses and not defined and (_is_open_rate(left, right) or _is_open_rate(right, left)):
         return NamedFormula(text(left), left, right, solve=None)
-    if claim.hypotheses or any(name in known for quantities in letters for name, _ in quantities):
+    is_moving = any(node.kind == "call" and node.value == "diff" for side in (left, right) for _, node in walk(side))
+    if not claim.hypotheses and left.kind == "name" and _has_own_letters(_letters_by_definition(claim, left, right)):
+        return NamedFormula(text(left), left, right, solve=None)
+    if claim.hypotheses or any(
+        name in known and (name != "t" or is_moving) for quantities in letters for name, _ in quantities
+    ):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):
         return None
@@ -147,7 +152,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
     is_whole = (left, right) == claim.relation[1:]  # no common factor was left out
-    is_open = is_whole and _is_constraint(left, right, letters)
+    is_open = (is_whole and _is_constraint(left, right, letters)) or _has_own_letters(letters)
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
 
 
@@ -178,13 +183,42 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether an equation says that a sum with several letters is a number: q0^2 + q1^2 + q2^2 + q3^2 = 1."""
+    """Return whether an equation says that several letters make a number: q0^2 + q1^2 + q2^2 + q3^2 = 1, T/U = 2."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
+    if polynomial.kind == "product" and not _quantities(constant) and constant != number(0):
+        factors = [factor.args[0] if factor.kind == "inv" else factor for factor in polynomial.args]
+        names = [str(factor.value) for factor in factors if _is_name(factor)]
+        return len({*names}) > 1 and all(factor.kind == "number" or _is_name(factor) for factor in factors)
     if polynomial.kind != "sum" or constant.kind != "number":
         return False
     powers = [node for _, node in walk(polynomial) if node.kind == "power"]
     outside = {name for factor in _factors(polynomial) if _is_name(factor) for name, _ in _quantities(factor)}
     return len(outside) > 1 and all(power.args[1].kind == "number" for power in powers)
+
+
+def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
+    """Return the quantities of both sides of ``F == k*x`` if a line before it defines F, as ``F = m*a`` does."""
+    defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
+    if left.value not in defined:
+        return [set(), set()]
+    sides = []
+    for side in (left, right):
+        letters, open_names = set[tuple[str, bool]](), _quantities(side)
+        for _ in range(len(defined) + 1):
+            inner = {name for name, _ in open_names if name in defined}
+            letters |= {quantity for quantity in open_names if quantity[0] not in inner and quantity[0] != "t"}
+            open_names = {quantity for name in inner for quantity in _quantities(defined[name])}
+        sides.append(letters)
+    return sides
+
+
+def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
+    """Return whether each side has a quantity that the other side lacks, as ``m*a == m*g - T`` has.
+
+    Such an equation determines its quantities; no one writes it as an identity.
+    """
+    left, right = letters
+    return bool(left - right) and bool(right - left)
 
 
 def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:

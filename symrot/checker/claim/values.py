@@ -38,6 +38,8 @@ def decide_value(claim: Claim) -> Decision:
         decision = decide_equation(Equation(value, value, (), divisors, (), tuple(interpreter.radicands)))
         if decision.verdict != "true":
             return Decision("undecided", reason=f"it is not known that {as_text(value)} is a real number")
+    if value.is_Rational and abs(Fraction(int(value.p), int(value.q)) - printed) == unit / 2:
+        return Decision("true")  # 4.905 rounds to 4.91 and, by another rule, to 4.90
     interval = enclosure(value)
     if interval is None:
         return Decision("undecided", reason=f"no enclosure of {as_text(value)} is known here")

@@ -23,6 +23,9 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 TIME = Node("name", "t")
+BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
+"""Names of the vectors of a basis: these are the axes if a text has at least two of them as vectors."""
+
 AXES = ("xyz", "123", "1234", "0123")
 """The last letters of the names of the components of vectors; of four for a quaternion."""
 
@@ -42,12 +45,14 @@ class Vector:
     timed: bool = False
     unit: bool = False
     axes: str = "xyz"
+    place: int | None = None
 
     @property
     def components(self) -> Node:
         """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
         if self.is_axis:
-            return _matrix([number(int(self.name == axis)) for axis in "xyz"])
+            place = "xyz".index(self.name) if self.place is None else self.place
+            return _matrix([number(int(place == other)) for other in range(3)])
         if is_tensor(self.name):
             rows = [[f"{self.name}_{''.join(sorted(i + j))}" for j in self.axes] for i in self.axes]
             return _matrix([_list([self._entry(name) for name in row]) for row in rows])
@@ -55,8 +60,8 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it is a coordinate axis: x, y or z with a hat."""
-        return self.unit and self.name in ("x", "y", "z")
+        """Whether it is a coordinate axis: x, y or z with a hat, or a vector of a basis, such as i, j and k."""
+        return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
         return Node("call", name, (TIME,)) if self.timed else Node("name", name)
@@ -125,9 +130,20 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
     used = {str(node.value) for node in trees if node.kind == "name"}
     rates = [node for node in trees if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
     moving = {node.value for rate in rates for _, node in walk(rate.args[0])}
-    axes = {name for name in names if Vector(name, unit=names[name]).is_axis}
+    places = {
+        name: place
+        for basis in BASES
+        if len({*names} & {*basis}) > 1 and not moving & {*basis}
+        for place, name in enumerate(basis)
+    }
+    axes = {name for name in names if Vector(name, unit=names[name]).is_axis} | {*places}
+    names = {**names, **dict.fromkeys(sorted(used & {*places}), True)}
     needed = (used & {*names}) - (_lone_names(sides) - axes)
-    return tuple(Vector(name, name in moving, names[name], _axes(name, used)) for name in names if name in needed)
+    return tuple(
+        Vector(name, name in moving, names[name], _axes(name, used), places.get(name))
+        for name in names
+        if name in needed
+    )
 
 
 def _axes(name: str, used: Collection[str]) -> str:

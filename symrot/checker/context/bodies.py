@@ -100,12 +100,12 @@ class Body:
         rolls = self.motion in MOTIONS
         if (" roll" in name) != rolls:
             return not own and " roll" not in name
-        return not rolls or name.removesuffix(", squared").endswith(MOTIONS[self.motion])
+        return True  # the quantity tells apart the formulas of a body that rolls: energy, acceleration, speed
 
 
 GENERAL = "general"
-MOTIONS = {"rolls": "rolls", "rolls down a slope": "down a slope", "rolls from a height": "from a height"}
-"""Motion of a body that rolls -> the end of the names of derived formulas for it."""
+MOTIONS = ("rolls", "rolls down a slope", "rolls from a height")
+"""The motions of a body that rolls."""
 
 TOPS = ("symmetric top", "heavy top", "fast top", "of a top", "on a top", "steady precession", "sleeping top")
 
@@ -142,7 +142,8 @@ BODIES: tuple[Kind, ...] = (
     Kind("point mass", ("particle",), ("a point mass",)),
     Kind("two masses", ("dumbbell",), ("two masses about",)),
     Kind("round body", ("wheel that rolls",), ("a body that rolls",)),
-    Kind("symmetric top", ("heavy symmetric top", "heavy top", "lagrange top", "top"), TOPS),
+    Kind("symmetric top", ("top",), (*TOPS, "a free symmetric body")),
+    Kind("heavy top", ("heavy symmetric top", "lagrange top"), TOPS),
     Kind("fast top", ("fast symmetric top", "fast heavy top"), TOPS),
     Kind("sleeping top", ("sleeping top at its least spin",), TOPS),
     Kind("free symmetric body", ("free symmetric top", "symmetric body free of torque"),

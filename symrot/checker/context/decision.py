@@ -42,7 +42,7 @@ from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
-from symrot.checker.recognition.naming import SQUARED, verdict_on_name, words_of
+from symrot.checker.recognition.naming import SQUARED, has_word, verdict_on_name, words_of
 from symrot.checker.recognition.renaming import component, is_consistent
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
@@ -326,7 +326,8 @@ def _by_meant_formulas(
         value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
         return None
-    meant = list(_meant(claim.context, value, quantity, stated))
+    words = None if claim.context.meaning_of(quantity) else words_of(named)
+    meant = [other for other in _meant(claim.context, value, quantity, stated) if has_word(other.known.name, words)]
     decisions = [(candidate, _equal(candidate.value, value)) for candidate in meant]
     if not meant or any(decision is None or _is_open(decision) for _, decision in decisions):
         return None

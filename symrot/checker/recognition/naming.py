@@ -14,6 +14,7 @@ from typing import Any
 
 from sympy import Function, Matrix, Mul, Rational, Symbol, acos, asin, atan2
 
+from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
@@ -35,7 +36,7 @@ from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact.decide import decide
 
-__all__ = ["SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation", "words_of"]
+__all__ = ["SQUARED", "has_word", "verdict_near_relation", "verdict_on_name", "verdict_on_relation", "words_of"]
 
 TIME = Node("name", "t")
 
@@ -153,6 +154,14 @@ RARE = ("annulus", "thin tube", "conical shell")
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
 
+RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
+"""Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
+
+COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
+
+CROSS_PRODUCT = "cross product v x n"
+"""The end of the names of the known cross product and of its components."""
+
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 """The sequences of Euler angles that books use most, in this order."""
 
@@ -243,6 +252,8 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
     if claim.hypotheses:
         return _near(claim, named) if _are_usable(claim) else None
+    if named.solve is not None and _is_known_for_exchanged_masses(claim, named):
+        return None
     near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
     is_open = words_of(named) is not None or named.solve is None
     return _edited(claim, named) if near is None and is_open else near
@@ -298,7 +309,7 @@ def _is_norm(side: Node, other: Node) -> bool:
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None."""
     words = words_of(named)
-    nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
+    nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
     of_bodies = [near for near in nearby if _is_of_body(near.code, near.known.name)]
@@ -311,7 +322,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         tried.add(near.tree)
         if not _is_evident(claim, named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
-        if _says_too_little(claim, named, near):
+        if _says_too_little(claim, named, near) or _loses_letter(claim, near.tree):
             continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
         if readings and not _has_equal(claim, near.tree, repairs):
@@ -326,6 +337,28 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         repairs=tuple(repair for repair, _ in repairs.values()),
         recognised_as=readings,
     )
+
+
+def _loses_letter(claim: Claim, tree: Node) -> bool:
+    """Return whether the value of a formula does not depend on one of its letters, as that of ``1 + b/b`` does not."""
+    try:
+        value = claim.interpreter().read(tree)
+    except InputError:
+        return True
+    return not is_matrix(value) and not claim.define and len(atoms_of([value])) < len(_letters(tree) - {"pi"})
+
+
+def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
+    """Return whether a formula is a known one once m_1 and m_2 are exchanged: the other mass is the heavier one."""
+    exchanged = {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"}
+
+    def with_exchanged(node: Node) -> Node:
+        if node.kind == "name" and node.value in exchanged:
+            return replace(node, value=exchanged[str(node.value)])
+        return replace(node, args=tuple(map(with_exchanged, node.args)))
+
+    tree = with_exchanged(named.formula)
+    return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
 
 def _says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
@@ -353,7 +386,7 @@ def _misfit(name: str, known: str) -> float:
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
-def _has_word(known: str, words: Sequence[str] | None) -> bool:
+def has_word(known: str, words: Sequence[str] | None) -> bool:
     """Return whether one of several words is in the name of a known formula; an angular velocity is no velocity."""
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
@@ -376,7 +409,9 @@ def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
-        return words is not None
+        is_energy = near.known.name.startswith("kinetic energy") and near.known.name.endswith("rolls")
+        has_tension = "T" in letters | _letters(named.side) and claim.context.body is None
+        return words is not None and not (is_energy and has_tension)
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
@@ -556,7 +591,7 @@ def _fits(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
-    if not _has_word(known.name, words) or not _keeps_places(named, known):
+    if not has_word(known.name, words) or not _keeps_places(named, known):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
@@ -577,7 +612,17 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     letters = [*known.mapping.values()] or [*_letters(named.formula)]
     is_parallel = re.search("parallel.ax", known.name) is not None
-    if is_parallel and CENTRE.fullmatch(named.name) and any(map(POINT.fullmatch, letters)):
+    about_other = [letter for letter in letters if MOMENT.fullmatch(letter) and not CENTRE.fullmatch(letter)]
+    if is_parallel and CENTRE.fullmatch(named.name) and (about_other or any(map(POINT.fullmatch, letters))):
+        return False
+    of_aircraft = [
+        (old, new) for old, new in known.mapping.items() if new in RATES_OF_AIRCRAFT and old in COMPONENTS_OF_OMEGA
+    ]
+    if any(old[-1] not in RATES_OF_AIRCRAFT[new] for old, new in of_aircraft):
+        return False
+    if len(of_aircraft) > 1 and "space frame" in known.name:
+        return False
+    if known.name.endswith(CROSS_PRODUCT) and _is_reversed(named.name, known):
         return False
     if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
         return False  # the whole spin is no rate of an angle
@@ -591,6 +636,12 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False
     return not any(MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old) for old, new in known.mapping.items())
+
+
+def _is_reversed(name: str, known: Identification) -> bool:
+    """Return whether a velocity is named by r x omega, which has the wrong order."""
+    second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
+    return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:

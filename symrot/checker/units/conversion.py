@@ -229,7 +229,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
         name = next((name for name, other in units.items() if other == unit), f"unit_{len(units) + 1}")
         units[name] = unit
         divides = plain[: match.start()].rstrip().endswith("/")
-        fraction = re.fullmatch(_FRACTION, match[1])
+        fraction = re.fullmatch(rf"[^/]*/\s*{_NUMBER}", match[1])  # 2/60 and 2π/60
         if fraction and not way.by_whole:
             return f"({match[1].replace('/', '/(')}*{name}))"
         return f"{match[1]}*{name}" if (divides and not way.by_whole) or not match[1] else f"({match[1]}*{name})"
@@ -300,6 +300,8 @@ def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct
         return False
     if names:
         return has_long or all(unit.text in _PLAUSIBLE for unit in units.values())
+    if not has_long and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
+        return False  # the weight m g
     sides = re.split(r"==?", text)
     return has_long or (len(sides) > 1 and all("unit_" in side for side in sides))
 
