@@ -15,11 +15,12 @@ from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
 from symrot import symbols
-from symrot.checker.claim.claims import Claim, claim_of_text
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.source.text import claim_of_text
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.context.admission import admits_letters, admits_name
 from symrot.checker.context.context import read_context

@@ -32,9 +32,9 @@ from typing import Any, NamedTuple
 from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 
 import symrot
-from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.reader import readings_of
-from symrot.checker.interface import is_latex
+from symrot.checker.claim.source.lines import claims_of_reading
+from symrot.checker.claim.source.text import is_latex
 from symrot.checker.latex.reader import latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
