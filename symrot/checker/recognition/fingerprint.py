@@ -172,6 +172,8 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         For a formula without symbols, or without values in the field.
     """
     written = sorted(atoms_of(entries), key=str)
+    if (alike := _alike(entries, written)) is not None:
+        return alike
     atoms = _active(entries, written)
     if not atoms:
         raise NotInField
@@ -187,6 +189,22 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         return fingerprint(cancelled)
     rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+
+
+def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
+    """Return the fingerprint of a formula that has a value where all atoms are equal and moves with each of them."""
+    raised, others = DRAWS[0]
+    point = dict.fromkeys(written, others)
+    here = _defined(entries, point)
+    if here is None or not written:
+        return None
+    rows = []
+    for atom in written:
+        row = _defined(entries, {**point, atom: raised})
+        if row is None or row == here:
+            return None
+        rows.append(row)
+    return Fingerprint(tuple(written), tuple(rows))
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:

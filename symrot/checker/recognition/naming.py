@@ -26,7 +26,7 @@ from symrot.checker.recognition.identification import identified, plain_name, un
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
-from symrot.checker.recognition.relations import primitive, terms_expanded
+from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, neighbours, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
@@ -462,7 +462,7 @@ def _readings_of_relation(
         return ()
     if terms_expanded(value) > MOST_TERMS:
         return ()
-    value = primitive(value)
+    value = without_common_powers(value)
     letters = {*letters_of(tree), *letters_of(named.side)}
     looked_up = identified(value, steps=False, named=True, quantity="", is_relation=True)
     fitting = (
