@@ -7,7 +7,7 @@ for either order of a quaternion's components. Every name that is returned has b
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import islice, permutations, product
 from typing import Any
 
@@ -306,6 +306,7 @@ def _is_usual(mine: Expr, own: Expr) -> bool:
     return pattern is None or re.fullmatch(pattern, name) is not None
 
 
+@lru_cache(maxsize=20_000)
 def plain_name(name: str) -> str:
     """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import islice, pairwise
 from typing import Any
 
-from sympy import Function, Matrix, Mul, Rational, Symbol, acos, asin, atan2
+from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan2
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
@@ -460,7 +460,7 @@ def _readings_of_relation(
         return ()
     if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
         return ()
-    if terms_expanded(value) > MOST_TERMS:
+    if terms_expanded(value) > MOST_TERMS or _has_root_of_sum(value):
         return ()
     value = without_common_powers(value)
     letters = {*letters_of(tree), *letters_of(named.side)}
@@ -471,6 +471,11 @@ def _readings_of_relation(
         if _keeps_places(named, known) and _fits_context(claim.context, named, known, letters)
     )
     return tuple(islice(fitting, MOST_READINGS))
+
+
+def _has_root_of_sum(value: Any) -> bool:
+    """Return whether a formula has the root of a sum, as no known relation has."""
+    return any(power.base.is_Add and not power.exp.is_Integer for power in value.atoms(Pow))
 
 
 def _readings_of_formula(

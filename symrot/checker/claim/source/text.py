@@ -130,16 +130,15 @@ def claim_of_relation(
         *(tree for _, tree in define),
         *context,
     ]
-    rates = {
-        str(node.value) for tree in trees for _, node in walk(tree) if node.kind == "call" and node.args == (TIME,)
-    }
+    calls = (node for tree in trees for _, node in walk(tree) if node.kind == "call")
+    functions = {str(node.value) for node in calls if node.args == (TIME,)}
     letters = letters_of_quantities(trees)
     of_axes = _with_rotated_axes(relation)
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
         symbols=letters,
-        functions=tuple(letter for letter in OTHER_MEANINGS if letter in rates),
+        functions=tuple(letter for letter in OTHER_MEANINGS if letter in functions),
         define=tuple(define),
         hypotheses=hypotheses,
         alternatives=() if of_axes == relation else (of_axes,),
