@@ -5,7 +5,7 @@ wrong part of a formula does not see such faults; so whole formulas are compared
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -88,16 +88,21 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _factors(formula, numeric, letters)
 
 
+def _always(node: Node) -> Callable[[Node], Node]:
+    """Return the function that gives the same tree in place of any other."""
+    return lambda _: node
+
+
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
     """Yield the squares of the matrices of a formula, and the matrices in place of their squares."""
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
             squared = Node("power", None, (node, number(2)))
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, lambda _, new=squared: new))
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(squared)))
         elif node.kind == "power" and numeric.is_matrix(node.args[0]):
             base = node.args[0]
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, lambda _, new=base: new))
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(base)))
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
@@ -107,7 +112,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
             made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
             cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
-            tree = replaced(formula, (*path, place), lambda _, new=made: new)
+            tree = replaced(formula, (*path, place), _always(made))
             yield Edit("active_passive_transpose", cost, (*path, place), tree)
 
 
@@ -121,7 +126,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             continue
         for factor in scalars:
             made = product([factor, node])
-            tree = flattened(replaced(formula, path, lambda _, new=made: new))
+            tree = flattened(replaced(formula, path, _always(made)))
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 

@@ -130,8 +130,7 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference, multiplied by such powers of symbols and functions that no term has one as a divisor or all
-    terms have one as a factor.
+    """Return a difference times powers of symbols and functions, so that none divides a term or is a factor of all.
 
     Up to a constant factor it is what :func:`primitive` returns, which is slower, because it multiplies out.
     """
