@@ -59,7 +59,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
-            if other_verdict is None and repair and is_false and claim.implied and not verdict.repairs:
+            is_open = is_false and claim.implied and not (named and _was_near_relation(claim))
+            if other_verdict is None and repair and is_open and not verdict.repairs:
                 verdict = _near_relation(claim, verdict)
     except TimeUp:
         other_verdict = None
@@ -130,6 +131,14 @@ def _on_name(
             by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
             verdict = by_name if by_name.verdict == "doubtful" else by_hypotheses
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _was_near_relation(claim: Claim) -> bool:
+    """Return whether the verdict on the name of a claim compared its whole equation with known relations."""
+    if claim.relation is None or claim.context:
+        return False
+    named = related_formula(claim)
+    return named is not None and named.solve is None and (named.side, named.formula) == claim.relation[1:]
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:

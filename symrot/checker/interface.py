@@ -6,13 +6,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import (
-    Refusal,
-    functions_of_time,
-    is_latex,
-    read_entries,
-)
 from symrot.checker.claim.size import MOST_NESTED, nesting
+from symrot.checker.claim.source.file import Refusal, read_entries
+from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.copied_signs import with_plain_signs

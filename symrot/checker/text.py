@@ -10,11 +10,12 @@ from dataclasses import replace
 
 from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
-from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
-from symrot.checker.claim.lines import claims_of_reading
+from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
 from symrot.checker.claim.reader import Declared, Reading, readings_of
+from symrot.checker.claim.source.lines import claims_of_reading
+from symrot.checker.claim.source.text import functions_of_time
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of

@@ -10,8 +10,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, read_claims
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Declared, read_expression, read_relation
+from symrot.checker.claim.source.file import read_claims
 from symrot.checker.claim.tree import Node, product, sum_of, text, walk
 from symrot.checker.claim_verdict import check_readings
 from symrot.checker.decide.decision import decide_equation

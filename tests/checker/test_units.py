@@ -8,7 +8,7 @@ import pytest
 
 import symrot
 from symrot import catalogue, symbols
-from symrot.checker.claim.claims import read_claims
+from symrot.checker.claim.source.file import read_claims
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.units.units import (
     CONVENTIONAL_UNITS,

@@ -3,8 +3,8 @@
 import pytest
 from sympy import Matrix, Rational, Symbol, symbols
 
-from symrot.checker.claim.claims import claim_of_text
 from symrot.checker.claim.interpreter import Interpreter
+from symrot.checker.claim.source.text import claim_of_text
 from symrot.checker.decide import decision as claims
 from symrot.exact import decide as formulas
 from symrot.exact.decision import Decision, ShapeMismatch, first_decision, matched_sides, place_in_matrix

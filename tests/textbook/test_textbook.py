@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from symrot.checker.claim.claims import read_claims
 from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.source.file import read_claims
 from symrot.checker.textbook import OUTCOMES, differs_by_lost_characters, finding_of
 from symrot.errors import InputError
 from symrot.report import errata

@@ -5,6 +5,7 @@ The place of an axis is the point through which it passes; the titles of places 
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 
 from symrot.checker.context.angle_orders import AXIS_OF_ANGLE, has_order, place_by_words
 from symrot.checker.context.bodies import bodies_of_formula
@@ -269,10 +270,11 @@ def is_place(words: str) -> bool:
     return any(words == title for title, _, _ in PLACES)
 
 
-def _tokens(text: str) -> list[str]:
+@lru_cache(maxsize=20_000)
+def _tokens(text: str) -> tuple[str, ...]:
     """Return the words of a text that distinguish formulas, in one spelling."""
-    return [
+    return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))
         if word.strip("'") not in _STOP and len(word) > 1
-    ]
+    )

@@ -47,7 +47,8 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
         for order in orders(context, letters, sequence):
             q, dq = _coordinates(order.places)
-            omega = Matrix(rate_jacobian(sequence, frame, q)) * Matrix(dq)
+            rates_matrix = rate_jacobian(sequence, frame)
+            omega = Matrix(rates_matrix.xreplace(dict(zip(rates_matrix.parameters, q, strict=True)))) * Matrix(dq)
             values = {atom: q[order.places[name]] for atom, name in angles.items()}
             values |= {atom: dq[order.places[name]] for atom, name in rates.items()}
             values |= {atom: omega[AXES[match[1] or match[2]]] for atom, match in components.items()}

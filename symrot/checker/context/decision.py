@@ -40,9 +40,10 @@ from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.recognition.evidence import has_word, words_of
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
-from symrot.checker.recognition.naming import SQUARED, has_word, verdict_on_name, words_of
+from symrot.checker.recognition.naming import SQUARED, verdict_on_name
 from symrot.checker.recognition.renaming import component, is_consistent
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict

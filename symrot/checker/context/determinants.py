@@ -69,9 +69,9 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
     generic = {*matrices_of_entries(claim.define)}
     for own, formula in (claim.relation[1:], claim.relation[:0:-1]):
         names = {str(node.value) for _, node in walk(formula) if node.kind == "name"} - {"pi"}
-        if not _is_determinant(own, generic) or len(names) != 1 or not SECOND_ANGLE.fullmatch(*names):
+        letter = next(iter(names)) if len(names) == 1 else ""
+        if not _is_determinant(own, generic) or not SECOND_ANGLE.fullmatch(letter):
             continue
-        (letter,) = names
         if readings := _readings(claim, formula, letter):
             return Verdict("recognised", recognised_as=readings)
         return _edited(claim, own, formula, letter) if repair else None

@@ -17,6 +17,7 @@ from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.verdict import Diagnosis, Identification, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
+from symrot.exact.floats import seems_zero
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["Substitution", "by_substitution", "decided"]
@@ -61,16 +62,22 @@ class Substitution:
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
     """Return the decision on an equation after a substitution; None if it cannot be decided."""
-    values = substitution.values
-
-    def put(formula: Any) -> Any:
-        return formula.xreplace(values)
-
-    left, right = substitution.sides or (equation.left, equation.right)
     try:
-        return decide_equation(Equation(put(left), put(right)))
+        return decide_equation(Equation(*_sides(equation, substitution)))
     except (InputError, TooLarge):
         return None
+
+
+def may_be_true(equation: Equation, substitution: Substitution) -> bool:
+    """Return whether the sides of an equation after a substitution have nearly equal values at some points."""
+    left, right = _sides(equation, substitution)
+    return seems_zero(left - right)
+
+
+def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
+    """Return the sides of an equation after a substitution."""
+    left, right = substitution.sides or (equation.left, equation.right)
+    return left.xreplace(substitution.values), right.xreplace(substitution.values)
 
 
 def by_substitution(
@@ -81,8 +88,13 @@ def by_substitution(
     The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that it leaves no
     other way, the claim is false if it is false in all of them.
     """
+    if not is_complete and verdict.verdict not in OPEN:
+        return verdict
     equation = claim.equation
-    decisions = [(way, decided(equation, way)) for way in islice(substitutions, MOST_SUBSTITUTIONS)]
+    decisions = [
+        (way, decided(equation, way) if is_complete or may_be_true(equation, way) else None)
+        for way in islice(substitutions, MOST_SUBSTITUTIONS)
+    ]
     true = [way for way, decision in decisions if decision is not None and decision.verdict == "true"]
     is_stated = is_complete and any(not way.guess for way in true)
     if true and (verdict.verdict in OPEN or (is_stated and verdict.verdict == "recognised")):

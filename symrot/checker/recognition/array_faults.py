@@ -5,11 +5,11 @@ wrong part of a formula does not see such faults; so whole formulas are compared
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from symrot.checker.claim.tree import Node, Path, number, product, replaced, walk
+from symrot.checker.claim.tree import Node, number, product, replaced, walk
 from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
 from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
@@ -88,9 +88,9 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _factors(formula, numeric, letters)
 
 
-def _with(formula: Node, path: Path, node: Node) -> Node:
-    """Return a formula with another node at a path."""
-    return replaced(formula, path, lambda _: node)
+def _always(node: Node) -> Callable[[Node], Node]:
+    """Return the function that gives the same tree in place of any other."""
+    return lambda _: node
 
 
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
@@ -99,10 +99,10 @@ def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
             squared = Node("power", None, (node, number(2)))
-            yield Edit("exponent", COST["exponent"], path, _with(formula, path, squared))
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(squared)))
         elif node.kind == "power" and numeric.is_matrix(node.args[0]):
             base = node.args[0]
-            yield Edit("exponent", COST["exponent"], path, _with(formula, path, base))
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(base)))
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
@@ -112,7 +112,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
             made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
             cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
-            tree = _with(formula, (*path, place), made)
+            tree = replaced(formula, (*path, place), _always(made))
             yield Edit("active_passive_transpose", cost, (*path, place), tree)
 
 
@@ -126,7 +126,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             continue
         for factor in scalars:
             made = product([factor, node])
-            tree = flattened(_with(formula, path, made))
+            tree = flattened(replaced(formula, path, _always(made)))
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 

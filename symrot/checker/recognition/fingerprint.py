@@ -21,6 +21,8 @@ PRIME = 2**61 - 1
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """(value of one symbol, value of all others), tried in turn until the formula is defined."""
+MOST_UNDEFINED = 3
+"""The most of these points at which a formula is tried; one without a value there has none where letters are equal."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
 LARGEST_MULTIPLE = 400
@@ -170,12 +172,15 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         For a formula without symbols, or without values in the field.
     """
     written = sorted(atoms_of(entries), key=str)
+    if (alike := _alike(entries, written)) is not None:
+        return alike
     atoms = _active(entries, written)
     if not atoms:
         raise NotInField
-    for raised, others in DRAWS:
+    for raised, others in DRAWS[:MOST_UNDEFINED]:
+        point = dict.fromkeys(written, others)
         try:
-            rows = [values_at(entries, {a: raised if a == atom else others for a in written}) for atom in atoms]
+            rows = [values_at(entries, {**point, atom: raised}) for atom in atoms]
         except NotInField:
             continue
         return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
@@ -184,6 +189,22 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         return fingerprint(cancelled)
     rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+
+
+def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
+    """Return the fingerprint of a formula that has a value where all atoms are equal and moves with each of them."""
+    raised, others = DRAWS[0]
+    point = dict.fromkeys(written, others)
+    here = _defined(entries, point)
+    if here is None or not written:
+        return None
+    rows = []
+    for atom in written:
+        row = _defined(entries, {**point, atom: raised})
+        if row is None or row == here:
+            return None
+        rows.append(row)
+    return Fingerprint(tuple(written), tuple(rows))
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:

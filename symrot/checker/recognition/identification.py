@@ -7,7 +7,7 @@ for either order of a quaternion's components. Every name that is returned has b
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import islice, permutations, product
 from typing import Any
 
@@ -15,11 +15,12 @@ from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
 from symrot import symbols
-from symrot.checker.claim.claims import Claim, claim_of_text
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.quantities import has_natural_base, letters_of_quantities, with_natural_base
 from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.source.text import claim_of_text
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.context.admission import admits_letters, admits_name
 from symrot.checker.context.context import read_context
@@ -309,6 +310,7 @@ def _is_usual(mine: Expr, own: Expr) -> bool:
     return pattern is None or re.fullmatch(pattern, name) is not None
 
 
+@lru_cache(maxsize=20_000)
 def plain_name(name: str) -> str:
     """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)

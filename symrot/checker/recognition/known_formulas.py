@@ -14,10 +14,10 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 
 from symrot import catalogue, symbols
-from symrot.checker.recognition.bodies import bodies
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
-from symrot.checker.recognition.kinematics import GYROSCOPE, along_axes, rotations, vectors
-from symrot.checker.recognition.mechanics import one_axis, tops
+from symrot.checker.recognition.formulas.bodies import bodies
+from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, along_axes, rotations, vectors
+from symrot.checker.recognition.formulas.mechanics import one_axis, tops
 from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations

@@ -39,7 +39,7 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import quaternion
 from symrot.kinematics.euler import rate_jacobian
 
-__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved", "terms_expanded"]
+__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved", "terms_expanded", "without_common_powers"]
 
 PHI, THETA, PSI = symbols.angles
 DPHI, DTHETA, DPSI = symbols.angle_rates
@@ -127,6 +127,48 @@ def primitive(difference: Expr) -> Expr:
         return Poly(numerator).terms_gcd()[1].primitive()[1].as_expr()
     except (PolynomialError, GeneratorsNeeded):
         return numerator
+
+
+def without_common_powers(difference: Expr) -> Expr:
+    """Return a difference times powers of symbols and functions, so that none divides a term or is a factor of all.
+
+    Up to a constant factor it is what :func:`primitive` returns, which is slower, because it multiplies out.
+    """
+    common = _common_powers(difference)
+    if common is None:
+        return primitive(difference)
+    return (
+        Mul(difference, *(part**-power for part, power in common.items())).expand(deep=False) if common else difference
+    )
+
+
+def _common_powers(formula: Expr) -> dict[Expr, int] | None:
+    """Return the powers of symbols and functions that all terms of a formula have in common, in divisors too.
+
+    The result is None for a formula with roots, or with another divisor than a product of such powers.
+    """
+    if isinstance(formula, Add):
+        terms = [_common_powers(term) for term in formula.args]
+        if None in terms:
+            return None
+        powers = [term for term in terms if term is not None]
+        least = {part: min(term.get(part, 0) for term in powers) for part in {part for term in powers for part in term}}
+        return {part: power for part, power in least.items() if power}
+    if isinstance(formula, Mul):
+        total: dict[Expr, int] = {}
+        for factor in formula.args:
+            own = _common_powers(factor)
+            if own is None:
+                return None
+            for part, power in own.items():
+                total[part] = total.get(part, 0) + power
+        return total
+    if isinstance(formula, Pow):
+        inner = _common_powers(formula.base)
+        if inner is None or not formula.exp.is_Integer or (formula.exp < 0 and formula.base.is_Add):
+            return None
+        return {part: power * int(formula.exp) for part, power in inner.items()}
+    return {} if formula.is_number else {formula: 1}
 
 
 LONGEST = 120

@@ -1,6 +1,7 @@
 """Verdicts of ``symrot check`` on the corpus of printed formulas, against the expected ones.
 
     python -m tests.campaigns.checker.printed [--workers 2] [--chapter NAME] [--list OUTCOME .. misnamed lost]
+        [--slowest 25]
 
 A formula of the corpus has one of these outcomes; the first two are wrong answers:
 
@@ -13,7 +14,8 @@ right      the verdict is the expected one, or another one that the corpus count
 Two shares are printed, of the faulty formulas that are called false or doubtful and of all faulty formulas: those whose
 diagnosis names the fault of the corpus, and those with the original formula among the three repairs, up to a renaming
 of its letters. ``--list misnamed lost`` prints the faulty formulas with another diagnosis, and those without their
-original among the repairs. A table counts the formulas of each chapter.
+original among the repairs. A table counts the formulas of each chapter. ``--slowest N`` prints the N formulas that take
+the most processor time.
 
 The command ends with exit code 1 if there is a wrong answer.
 """
@@ -32,9 +34,9 @@ from typing import Any, NamedTuple
 from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 
 import symrot
-from symrot.checker.claim.lines import claims_of_reading
 from symrot.checker.claim.reader import readings_of
-from symrot.checker.interface import is_latex
+from symrot.checker.claim.source.lines import claims_of_reading
+from symrot.checker.claim.source.text import is_latex
 from symrot.checker.latex.reader import latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
@@ -258,6 +260,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--chapter", default="")
     parser.add_argument("--list", nargs="*", default=["accused", "believed"], choices=(*OUTCOMES, *SHORTCOMINGS))
+    parser.add_argument("--slowest", type=int, default=0, metavar="N")
     options = parser.parse_args(arguments)
     entries = formulas(options.chapter)
     with ProcessPoolExecutor(options.workers) as pool:
@@ -276,6 +279,9 @@ def main(arguments: list[str] | None = None) -> int:
     _print_chapters(entries, results, faulty)
     times = sorted(result.seconds for result in results)
     print(f"slowest {times[-1]:.1f} s, median {times[len(times) // 2]:.2f} s, all {sum(times):.0f} s")
+    slow = sorted(zip(entries, results, strict=True), key=lambda pair: -pair[1].seconds)[: options.slowest]
+    for entry, result in slow:
+        print(f"{result.seconds:6.2f} s  {result.verdict:12}{entry['id']}")
     for entry, result in zip(entries, results, strict=True):
         if result.outcome in options.list:
             line = f"{result.outcome:9}{result.verdict:12}{entry['id']:34}{entry['text']!r:60}"

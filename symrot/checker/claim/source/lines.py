@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, open_numbers, substituted
-from symrot.checker.claim.claims import Claim, check_units, claim_of_relation
+from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Chain, Reading
+from symrot.checker.claim.source.text import check_units, claim_of_relation
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of

@@ -1,0 +1,330 @@
+"""Claims read from texts of one equation, with their hypotheses, vectors, matrices and quaternions."""
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with_parts
+from symrot.checker.arrays.index_notation import written_out
+from symrot.checker.arrays.matrices import (
+    bold_matrices,
+    matrices_of_entries,
+    matrix_of_entries,
+    rate_matrices,
+    used_columns,
+    used_matrices,
+    with_lengths,
+    without_time,
+)
+from symrot.checker.arrays.pauli import with_pauli_matrices
+from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
+from symrot.checker.claim.claims import Claim, assumed_names
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
+from symrot.checker.claim.quantities import (
+    OTHER_MEANINGS,
+    has_natural_base,
+    letters_of_quantities,
+    with_natural_base,
+)
+from symrot.checker.claim.reader import Declared, Relation, read_relation, readings_of, with_time
+from symrot.checker.claim.shapes import (
+    Shape,
+    added_names,
+    multiplied_names,
+    operand_names,
+    shape_of,
+    with_unit_matrices,
+)
+from symrot.checker.claim.tree import Node, negated, walk
+from symrot.checker.claim.tree import number as number_node
+from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
+from symrot.checker.latex.reader import Names, read_latex
+from symrot.checker.typed.cursor import TIME
+from symrot.checker.units.units import read_unit
+from symrot.errors import InputError
+
+__all__ = ["check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis"]
+
+ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
+
+
+def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
+    """Return the claim of a text ``left == right``. Text with a backslash, a brace or a dollar sign is read as LaTeX.
+
+    Names become real symbols, or functions of time if they are written ``f(t)``; so do the names in the hypotheses. A
+    text that can be read in two ways is refused; :func:`symrot.checker.claim.source.lines.claims_of_reading` is for it.
+    """
+    vectors: tuple[Vector, ...] = ()
+    if isinstance(source, str) and is_latex(source):
+        equation = read_latex(source, names=Names(functions=functions_of_time(assume)))
+        source, vectors = equation.text, equation.vectors
+    return claim_of_relation(read_relation(source), source, assume, units, vectors=vectors)
+
+
+def claim_of_relation(
+    relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
+    define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
+    vectors: Sequence[Vector] = (),
+) -> Claim:  # fmt: skip
+    """Return the claim of an equation that was read from a text.
+
+    ``define`` are the definitions on earlier lines of the text, ``context`` are its other formulas, and ``vectors`` are
+    names with three components.
+
+    Raises
+    ------
+    InputError
+        For a relation that is no equation, and for units of names that the claim does not have.
+    """
+    if relation[0] != "==":
+        instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
+        raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    relation, on_indices = written_out(relation)
+    notes = [*notes, *([on_indices] if on_indices else [])]
+    names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
+    words = {name for name in names if len(name) > 1 and name.isalpha()}
+    matrices = {source: _matrix_given(source, words) for source in assume}
+    assume = [source for source in assume if matrices[source] is None]
+    define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
+    hypotheses = _of_one_time([read_hypothesis(source, "given", words=words) for source in assume])
+    relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
+    define = [*pauli, *define]
+    notes = [*notes, *([ON_PAULI] if pauli else [])]
+    unit = None if pauli else imaginary_unit([*relation[1:], *context])
+    is_vector = unit is not None and unit.value in {vector.name for vector in vectors}
+    if unit is not None and (is_vector or not is_complex(relation[1:], str(unit.value))):
+        unit = None
+    if unit is not None:
+        relation = with_parts(relation, str(unit.value), source)
+        notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
+    moving_matrices = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
+    sign, left, right = relation
+    relation = sign, without_time(left, moving_matrices), without_time(right, moving_matrices)
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors}) | moving_matrices
+    vectors = [vector for vector in vectors if vector.name not in bold]
+    define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
+    arrays = _with_arrays(relation, vectors, define)
+    solved = {side.value for side in arrays.relation[1:]} - {side.value for side in relation[1:]}
+    define = [(name, tree) for name, tree in define if name not in bold or name not in solved]
+    notes = [*notes, *(_on_matrix(name) for name in bold if name not in solved)]
+    relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
+    vectors = [*vectors, *map(Vector, arrays.vectors)]
+    vectors = [vector for vector in vectors if vector.name not in dict(define)]
+    relation, vectors, with_units = _with_vectors(relation, vectors, define)
+    relation, lengths = with_lengths(relation, _shapes(vectors, define))
+    notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
+    moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}
+    relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
+    hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
+    define = [*((vector.name, vector.components) for vector in vectors), *define]
+    notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
+    everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
+    if has_natural_base(everything) and not any(name == "e" for name, _ in define):
+        notes.append("e is read as the base of the exponential function")
+        relation = _with_natural_base(relation)
+        hypotheses = tuple(map(_with_natural_base, hypotheses))
+        define = [(name, with_natural_base(tree)) for name, tree in define]
+    sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(assume)}}
+    sources |= {f"define.{n}": source for n in range(len(define))}
+    trees = [
+        *relation[1:],
+        *(side for hypothesis in hypotheses for side in hypothesis[1:]),
+        *(tree for _, tree in define),
+        *context,
+    ]
+    calls = (node for tree in trees for _, node in walk(tree) if node.kind == "call")
+    functions = {str(node.value) for node in calls if node.args == (TIME,)}
+    letters = letters_of_quantities(trees)
+    of_axes = _with_rotated_axes(relation)
+    used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
+    return Claim(
+        relation=relation,
+        symbols=letters,
+        functions=tuple(letter for letter in OTHER_MEANINGS if letter in functions),
+        define=tuple(define),
+        hypotheses=hypotheses,
+        alternatives=() if of_axes == relation else (of_axes,),
+        implied=True,
+        sources=sources,
+        units=check_units(dict(units or {}), used, "claim"),
+        has_parts=unit is not None or bool(on_indices),
+        notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
+    )
+
+
+def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
+    """Return hypotheses in which a name with a rate in one of them is a function of time in all of them."""
+    nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
+    rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
+    return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
+
+
+def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
+    """Return name and formula of a hypothesis that defines a matrix, ``R == R_z(psi)*R_y(theta)``; otherwise None."""
+    sign, left, right = read_hypothesis(source, "given", words=words)
+    is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
+    return (str(left.value), right) if is_definition else None
+
+
+def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
+    """Yield definitions: of matrices in hypotheses, and of the entries of R that a claim names R_31, R31 or r_31."""
+    names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
+    for matrix, tree in matrices:
+        yield matrix, tree
+        for name in names:
+            if entry := re.fullmatch(rf"(?:{matrix}|{matrix.lower()})_?([1-3])_?([1-3])", name):
+                places = [number_node(int(digit) - 1) for digit in entry.groups()]
+                yield name, Node("index", None, (Node("name", matrix), *places))
+
+
+def _with_vectors(
+    relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
+) -> tuple[Relation, list[Vector], bool]:
+    """Return a relation whose unit matrices are written ``eye(n)``, its vectors, and whether it has unit matrices.
+
+    A name that is added to a vector is a vector too. The name of an inertia, added to a matrix, is a tensor.
+    """
+    named = {name for name, _ in define} | {vector.name for vector in vectors}
+    vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
+    shapes = _shapes(vectors, define)
+    operands = {name: shape for name, shape in operand_names(relation, shapes).items() if name not in named}
+    vectors = [*vectors, *map(Vector, operands)]
+    shapes |= operands
+    with_units = with_unit_matrices(relation, shapes)
+    while new := {
+        name: shape
+        for name, shape in (*added_names(with_units, shapes).items(), *multiplied_names(with_units, shapes).items())
+        if shape == (3, 1) or (shape == (3, 3) and is_tensor(name))
+    }:
+        vectors = [*vectors, *map(Vector, new)]
+        shapes |= new
+    return with_units, vectors, with_units != relation
+
+
+def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> dict[str, Shape]:
+    """Return the shapes of vectors and of defined names."""
+    shapes: dict[str, Shape] = {}
+    for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
+        shapes[name] = shape_of(tree, shapes)
+    return shapes
+
+
+def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
+    """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
+    known = {name for name, _ in define}
+    names = {vector.name for vector in vectors}
+    generic = {*matrices_of_entries(define)}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known - generic)
+    known |= names | {name for name, _ in arrays.definitions}
+    matrices = used_matrices(arrays.relation[1:], known)
+    columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
+    return replace(
+        arrays,
+        definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
+        relation=_with_scalar_products(arrays.relation, [*columns, *names]),
+        vectors=(*arrays.vectors, *columns),
+        notes=(
+            *arrays.notes,
+            *map(_on_matrix, matrices),
+        ),
+    )
+
+
+def _on_matrix(name: str) -> str:
+    """Return the note on a name that is read as a matrix."""
+    return (
+        f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
+        f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
+    )
+
+
+def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
+    sign, left, right = relation
+    names = [name for name in names if not is_tensor(name)]
+    return sign, with_scalar_products(left, names), with_scalar_products(right, names)
+
+
+def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
+    """Yield notes on the names that are read as vectors and tensors."""
+    columns = [vector for vector in vectors if not is_tensor(vector.name) and not vector.is_axis]
+    if columns:
+        *others, last = sorted(vector.name for vector in columns)
+        are = f"{', '.join(others)} and {last} are vectors" if others else f"{last} is a vector"
+        first = min(columns, key=lambda vector: vector.name)
+        parts = ", ".join(f"{first.name}_{axis}" for axis in first.axes)
+        yield f"{are} with the components {parts}{' and so on' if others else ''}"
+    for vector in vectors:
+        if is_tensor(vector.name):
+            yield f"{vector.name} is a symmetric tensor with the entries {vector.name}_xx, {vector.name}_xy and so on"
+        if vector.place is not None:
+            yield f"{vector.name} is the unit vector of the {'xyz'[vector.place]} axis"
+        elif vector.is_axis:
+            yield f"{vector.name} with a hat is the {vector.name} axis"
+        elif vector.unit:
+            yield f"{vector.name} has the length 1, as its hat says"
+
+
+def _with_natural_base(relation: Relation) -> Relation:
+    sign, left, right = relation
+    return sign, with_natural_base(left), with_natural_base(right)
+
+
+def _with_rotated_axes(relation: Relation) -> Relation:
+    """Return a relation with R_x(-a) in place of ``R_x(a)``, which in some books rotates the axes, not the vectors."""
+
+    def turned(node: Node) -> Node:
+        args = tuple(map(turned, node.args))
+        if node.kind == "call" and node.value in ROTATIONS and "_" in node.value:
+            args = (negated(args[0]),)
+        return replace(node, args=args)
+
+    sign, left, right = relation
+    return sign, turned(left), turned(right)
+
+
+def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
+    """Return a hypothesis, read from text; ``words`` are names of the claim, never split into products of letters."""
+    if declared is None and isinstance(source, str) and is_latex(source):
+        relation = read_latex(source, where).relation
+    elif declared is None:
+        relation = read_relation(source, where, Declared(words) if words else None, rates=True)
+    else:
+        relation = read_relation(source, where, declared)
+    if relation[0] in ("==", "!=") or assumed_names([relation], ">") or assumed_names([relation], ">="):
+        return relation
+    raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
+
+
+def is_latex(source: str) -> bool:
+    """Return whether a text is LaTeX: it has a backslash, a brace or a dollar sign."""
+    return any(mark in source for mark in "\\${")
+
+
+def functions_of_time(assume: Sequence[str]) -> set[str]:
+    """Return the names f that occur in hypotheses as ``f(t)`` or with a time derivative."""
+    sides = [
+        side
+        for source in assume
+        for side in (
+            read_latex(source, "given").relation[1:]
+            if is_latex(source)
+            else [side for chain in readings_of(source, "given")[0].lines for side in chain.sides]
+        )
+    ]
+    return {
+        str(node.value)
+        for side in sides
+        for _, node in walk(side)
+        if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
+    }
+
+
+def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
+    """Return the units of a claim. Raise InputError for an unknown unit, or for a name that the claim does not have."""
+    for name, unit in units.items():
+        if name not in known:
+            raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
+        if not isinstance(unit, str):
+            raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
+        read_unit(unit, f"{place}: units: {name}")
+    return units

@@ -1,0 +1,1 @@
+"""Formulas that books name, derived by subject: moments of bodies, kinematics, mechanics."""
