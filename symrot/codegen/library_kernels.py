@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 from functools import cache
 
+from symrot.codegen.derivatives import Formulas, ways
 from symrot.codegen.lowering.lower import lower
 from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node, children, evaluate
 from symrot.kernels.definition import Box, Definition
+from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition
 
 __all__ = ["kernel_description", "kernel_program"]
@@ -16,10 +18,33 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name."""
+    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name.
+
+    A kernel with derivatives is computed in the way that needs the fewest operations; changes of sign count only
+    between ways that are otherwise equal.
+    """
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
-    lowered = lower(signature, kernel.formulas, kernel.named, parameter_argument="constant_")
+    chained = Formulas(kernel.formulas, kernel.named)
+    base, *variables = name.split(BY)
+    if not variables:
+        return _program(signature, chained)
+    plain = definition(base)
+    entries = [(output, variable) for output, by, variable in (name.partition(BY) for name, _ in kernel.formulas) if by]
+    groups = [[component for component, *_ in argument.components] for argument in kernel.inputs]
+    value = Formulas(plain.formulas, plain.named)
+    programs = [_program(signature, way) for way in ways(value, chained, kernel_program(base), entries, groups)]
+    return min(programs, key=_cost)
+
+
+def _cost(program: Program) -> tuple[int, int]:
+    counts = program.operations()
+    return counts.total() - counts["neg"], counts["neg"]
+
+
+def _program(signature: Signature, formulas: Formulas) -> Program:
+    """Return the straight-line program of formulas; constants such as pi become numbers."""
+    lowered = lower(signature, formulas.outputs, formulas.named, parameter_argument="constant_")
     known = {"pi": number.PI}
     values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
     program = lowered.program

@@ -25,7 +25,7 @@ from symrot.codegen.scene_kernels import rates_program, scene_description, with_
 from symrot.dynamics.equations import Equations, equations_of_motion
 from symrot.errors import InputError
 from symrot.formula.program import Program
-from symrot.kernels.library import definition, kernel_names
+from symrot.kernels.library import definition, is_kernel
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.scene.scene import Scene, SceneSource, load_scene
@@ -220,7 +220,7 @@ def kernel_text(kernel: KernelText | SceneSource) -> KernelText:
     """Return the texts of a kernel of the library, which is printed once per process, or of a scene."""
     if isinstance(kernel, KernelText):
         return kernel
-    return _library_text(kernel) if isinstance(kernel, str) and kernel in kernel_names() else scene_text(kernel)
+    return _library_text(kernel) if isinstance(kernel, str) and is_kernel(kernel) else scene_text(kernel)
 
 
 @cache
