@@ -27,7 +27,7 @@ from symrot.certificates.rounding.bounds import check_bounds, check_section
 from symrot.certificates.rounding.bounds_text import library_region, library_section
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
-from symrot.kernels.library import kernel_names
+from symrot.kernels.library import is_kernel
 from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["audit", "load_certificate"]
@@ -183,7 +183,7 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 def _bounds(path: Path, data: Data, source: str) -> str:
     """Return a sentence about the rounding error bounds; raise CertificateError if they do not hold for the C text."""
     section = data.get("rounding")
-    own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
+    own = library_section(data["kernel"], source) if is_kernel(data["kernel"]) else None
     if section is None:
         if isinstance(own, dict):
             raise CertificateError(

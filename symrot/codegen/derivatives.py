@@ -9,22 +9,22 @@ prints each and chooses:
 - if an output is linear in some inputs, its value as the sum of these inputs times their derivatives.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import sympy
 from sympy import Abs, Add, Expr, Function, Rational, S, Symbol
 
-from symrot.codegen.lowering.lower import ANONYMOUS
+from symrot.codegen.lowering.lower import ANONYMOUS, Lowered, lower
 from symrot.codegen.lowering.tape import tape_of
-from symrot.formula.program import Program
+from symrot.formula.program import Program, Signature
 from symrot.formula.tree import FUNCTIONS, Node, evaluate
 from symrot.kernels.derivative import exact_derivative
 from symrot.kernels.jacobian import BY
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
-__all__ = ["Formulas", "ways"]
+__all__ = ["Formulas", "cheapest", "ways"]
 
 _ARITHMETIC = ("+", "-", "*", "/", "neg")
 _OWN = {name: Function(name, real=True) for name in OWN_FUNCTIONS}
@@ -92,6 +92,25 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
         yield _with_sums(formulas, linear)
 
 
+def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
+    """Return the program with the fewest operations among equal formulas; changes of sign only decide between equals.
+
+    Parameters
+    ----------
+    signature, parameter_argument
+        As for :func:`symrot.codegen.lowering.lower.lower`.
+    formulas : iterable of Formulas
+        The results of :func:`ways`.
+    """
+
+    def cost(lowered: Lowered) -> tuple[int, int]:
+        counts = lowered.program.operations()
+        return counts.total() - counts["neg"], counts["neg"]
+
+    every = (lower(signature, each.outputs, each.named, parameter_argument) for each in formulas)
+    return min(every, key=cost)
+
+
 def _rational(value: Fraction) -> Rational:
     return Rational(value.numerator, value.denominator)
 
@@ -106,7 +125,8 @@ def _explicit(value: Formulas, entries: Entries) -> Formulas:
     slopes = []
     for output, variable in entries:
         symbol = _symbols(formulas[output]).get(variable)
-        slopes.append((_entry(output, variable), S.Zero if symbol is None else exact_derivative(formulas[output], symbol)))
+        slope = S.Zero if symbol is None else exact_derivative(formulas[output], symbol)
+        slopes.append((_entry(output, variable), slope))
     return Formulas((*value.outputs, *slopes))
 
 

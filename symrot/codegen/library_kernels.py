@@ -1,10 +1,9 @@
 """Straight-line programs of the library's kernels, derived from their formulas; constants such as pi become numbers."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 
-from symrot.codegen.derivatives import Formulas, ways
-from symrot.codegen.lowering.lower import lower
+from symrot.codegen.derivatives import Formulas, cheapest, ways
 from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, Signature
@@ -20,31 +19,11 @@ __all__ = ["kernel_description", "kernel_program"]
 def kernel_program(name: str) -> Program:
     """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name.
 
-    A kernel with derivatives is computed in the way that needs the fewest operations; changes of sign count only
-    between ways that are otherwise equal.
+    A kernel with derivatives is computed in the way that needs the fewest operations.
     """
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
-    chained = Formulas(kernel.formulas, kernel.named)
-    base, *variables = name.split(BY)
-    if not variables:
-        return _program(signature, chained)
-    plain = definition(base)
-    entries = [(output, variable) for output, by, variable in (name.partition(BY) for name, _ in kernel.formulas) if by]
-    groups = [[component for component, *_ in argument.components] for argument in kernel.inputs]
-    value = Formulas(plain.formulas, plain.named)
-    programs = [_program(signature, way) for way in ways(value, chained, kernel_program(base), entries, groups)]
-    return min(programs, key=_cost)
-
-
-def _cost(program: Program) -> tuple[int, int]:
-    counts = program.operations()
-    return counts.total() - counts["neg"], counts["neg"]
-
-
-def _program(signature: Signature, formulas: Formulas) -> Program:
-    """Return the straight-line program of formulas; constants such as pi become numbers."""
-    lowered = lower(signature, formulas.outputs, formulas.named, parameter_argument="constant_")
+    lowered = cheapest(signature, _ways(name, kernel), "constant_")
     known = {"pi": number.PI}
     values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
     program = lowered.program
@@ -53,6 +32,18 @@ def _program(signature: Signature, formulas: Formulas) -> Program:
         tuple((name, _with(node, values)) for name, node in program.temporaries),
         tuple((name, _with(node, values)) for name, node in program.outputs),
     )
+
+
+def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
+    """Return the formulas of a kernel, in each way to compute them."""
+    formulas = Formulas(kernel.formulas, kernel.named)
+    base, *variables = name.split(BY)
+    if not variables:
+        return (formulas,)
+    plain = definition(base)
+    entries = [(output, variable) for output, by, variable in (name.partition(BY) for name, _ in kernel.formulas) if by]
+    groups = [[component for component, *_ in argument.components] for argument in kernel.inputs]
+    return ways(Formulas(plain.formulas, plain.named), formulas, kernel_program(base), entries, groups)
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:

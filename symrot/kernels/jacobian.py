@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
-from sympy import Expr, Symbol
+from sympy import Add, Expr, Rational, Symbol
 
 from symrot.errors import InputError
 from symrot.formula.program import Argument
@@ -29,6 +29,8 @@ def jacobian_name(kernel: str, variables: Sequence[str]) -> str:
 
 def unit_of_quotient(above: str, below: str) -> str:
     """Return the unit of a quotient of two quantities as text, such as ``(rad/s)/(kg m^2)``."""
+    if not below:
+        return ""  # a constant of a scene, whose unit the scene does not say
     if below == "1" or above == below:
         return above if below == "1" else "1"
     if above.startswith(f"{below}/"):
@@ -112,15 +114,29 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
-    """Return the laws of the kernel, and the law that each derivative is the exact derivative of its output."""
-    names, symbols, laws = dict(kernel.named), _symbols(kernel), list(kernel.laws())
+    """Return the laws of the kernel, and the law that each derivative is the exact derivative of its output.
+
+    For an output ``y = a/b`` the law is ``b y' = a' - y b'``, which is shorter than the derivative of the quotient.
+    """
+    symbols, laws = _symbols(kernel), list(kernel.laws())
+    roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
     for name, components in chosen.items():
         vanishing = []
         for (output, formula), (variable, *_) in product(kernel.formulas, components):
-            whole = formula
-            for symbol in reversed(names):
-                whole = whole.xreplace({symbol: names[symbol]})
-            entry = Symbol(f"{output}{BY}{variable}", real=True)
-            vanishing.append(entry - exact_derivative(explicit(whole), symbols[variable]))
+            for symbol, value in reversed(kernel.named):
+                formula = formula if symbol in roots else formula.xreplace({symbol: value})
+            above, below = explicit(formula).as_numer_denom()
+            own, entry = (Symbol(each, real=True) for each in (output, f"{output}{BY}{variable}"))
+            slopes = [_slope(part, symbols[variable], roots) for part in (above, below)]
+            vanishing.append(below * entry - slopes[0] + own * slopes[1])
         laws.append(Law(f"the derivatives by {name} are those of the outputs", tuple(vanishing)))
     return tuple(laws)
+
+
+def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
+    """Return the derivative of a formula by an input, through the roots that the formula uses by a symbol."""
+    through = [
+        exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)
+        for root, value in roots.items()
+    ]
+    return Add(exact_derivative(formula, variable), *through)

@@ -62,7 +62,7 @@ class Removable:
     numerator: Expr  # a formula in x
     power: int
     split: Fraction
-    scaled: Expr  # numerator / x^(power - 2), term by term
+    scaled: str  # a formula of numerator / x^(power - 2) whose terms neither overflow nor cancel beyond the split
     about: str
 
     def formula(self, x: Expr) -> Expr:
@@ -111,13 +111,13 @@ def _derivative(which: Removable, order: int) -> Expr:
 REMOVABLE: dict[str, Removable] = {
     each.name: each
     for each in (
-        Removable("sine_gap", _x - sin(_x), 3, Fraction(4), 1 - sin(_x) / _x, "(x - sin(x))/x^3"),
-        Removable("tangent_gap", sin(_x) - _x * cos(_x), 3, Fraction(9, 4), sin(_x) / _x - cos(_x),
+        Removable("sine_gap", _x - sin(_x), 3, Fraction(4), "1 - sin(x)/x", "(x - sin(x))/x^3"),
+        Removable("tangent_gap", sin(_x) - _x * cos(_x), 3, Fraction(9, 4), "sin(x)/x - cos(x)",
                   "(sin(x) - x cos(x))/x^3; 4 ulp for |x| <= pi, before its first zero"),
         Removable("sine_bend", 2 * _x + _x * cos(_x) - 3 * sin(_x), 5, Fraction(9),
-                  (2 + cos(_x) - 3 * sin(_x) / _x) / _x**2, "(2 x + x cos(x) - 3 sin(x))/x^5"),
+                  "(2 + cos(x) - 3*(sin(x)/x))/x/x", "(2 x + x cos(x) - 3 sin(x))/x^5"),
         Removable("tangent_bend", (3 - _x**2) * sin(_x) - 3 * _x * cos(_x), 5, Fraction(4),
-                  (3 * (sin(_x) / _x - cos(_x)) / _x - sin(_x)) / _x,
+                  "(3*(sin(x)/x - cos(x))/x - sin(x))/x",
                   "((3 - x^2) sin(x) - 3 x cos(x))/x^5; 4 ulp for |x| <= pi, before its first zero"),
     )
 }  # fmt: skip
