@@ -22,6 +22,7 @@ from symrot.formula.program import Program, Signature
 from symrot.formula.tree import FUNCTIONS, Node, evaluate
 from symrot.kernels.derivative import exact_derivative
 from symrot.kernels.jacobian import BY
+from symrot.kernels.removable import DERIVATIVES
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
 __all__ = ["Formulas", "cheapest", "ways"]
@@ -81,11 +82,17 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
         The derivatives, in the order in which they are printed.
     groups : sequence of sequences of str
         The inputs, in groups in which the outputs may be linear.
+
+    Notes
+    -----
+    Functions such as sinc stay finite at zero only by the chain rule, which cancels the division by their argument.
     """
     explicit = _explicit(value.explicit, entries)
-    every = [chained, explicit]
-    for formulas in (Formulas.of(base), Formulas.of(_single_operations(base))):
-        every += [_forward(formulas, entries), _backward(formulas, entries)]
+    every = [chained]
+    if not set(base.operations()) & set(DERIVATIVES):
+        every.append(explicit)
+        for formulas in (Formulas.of(base), Formulas.of(_single_operations(base))):
+            every += [_forward(formulas, entries), _backward(formulas, entries)]
     linear = _linear_outputs(explicit, entries, groups)
     yield from every
     for formulas in every if linear else ():

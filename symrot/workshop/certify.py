@@ -14,6 +14,7 @@ from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
+from symrot.kernels.jacobian import BY
 from symrot.kernels.library import is_kernel
 from symrot.scene.file import names_with_kernels
 from symrot.scene.reader import nearest
@@ -214,7 +215,7 @@ def certify(
     if ranges and not bounds:
         raise InputError(f"--box: expected --box or --no-bounds, got both ({ranges[0]!r}); leave out one of them")
     printed, rounding = kernel_text(name), None
-    if bounds and (ranges or is_kernel(name)):
+    if bounds and (ranges or (is_kernel(name) and BY not in name)):  # derivatives are bounded on request
         progress("bounding ..")
         rounding = section(printed, ranges)
     scene_bounds = None if is_kernel(name) else rounding or stored_bounds(printed, directory)
