@@ -38,7 +38,7 @@ from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.scene.scene import Scene, SceneSource, load_scene
 
-__all__ = ["SUFFIX", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+__all__ = ["SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
 
 SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js"}
 """The ending of a source file in each language that kernels are printed in."""
@@ -196,12 +196,13 @@ class SceneText(KernelText):
         return rates_jacobian_program(self._equations, self.name, *self._formulas)
 
     @cached_property
-    def _program(self) -> Program:
+    def program(self) -> Program:
+        """The program of the rates; the descriptions of its parameters are their formulas and values."""
         return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
 
     @cached_property
     def _functions(self) -> str:
-        return c_functions(self._program)
+        return c_functions(self.program)
 
     def _description(self, target: str, lines: tuple[tuple[str, str], ...] = ()) -> Description:
         return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian)
@@ -209,17 +210,17 @@ class SceneText(KernelText):
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
         """Return the C source and its header, whose head comments state the bounds."""
         description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
-        return with_head(self._program, description, self._functions), c_header(self._program, description)
+        return with_head(self.program, description, self._functions), c_header(self.program, description)
 
     @cached_property
     def numpy(self) -> str:
         """The NumPy source."""
-        return numpy_source(self._program, self._description("numpy"))
+        return numpy_source(self.program, self._description("numpy"))
 
     @cached_property
     def js(self) -> str:
         """The JavaScript source."""
-        return js_source(self._program, self._description("js"))
+        return js_source(self.program, self._description("js"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts and equations."""
