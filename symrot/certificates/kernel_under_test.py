@@ -60,9 +60,9 @@ def scene_kernel_under_test(
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
     targets = (a for a in program.signature.arguments if a.role == "out")
     results = tuple((a, tuple(outputs[component] for component, *_ in a.components)) for a in targets)
+    laws = (*scene_laws(equations), *_derivative_laws(equations, tuple(outputs)))
     return KernelUnderTest(
-        program.signature.name, description.title, description, inputs,
-        results, tuple(named), (*scene_laws(equations), *_derivative_laws(equations, tuple(outputs))), files, ONLY_DOUBLE,
+        program.signature.name, description.title, description, inputs, results, tuple(named), laws, files, ONLY_DOUBLE,
         {name: _expression(node) for name, node in parameters},
     )  # fmt: skip
 

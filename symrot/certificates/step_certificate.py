@@ -2,8 +2,8 @@
 
 The formula is the method applied to the derived rates. It has too many terms to be expanded, so C text and formula are
 both computed at random points, exactly, in the field of integers modulo a prime. There, functions such as sin are
-random functions. If the two differ as rational functions of degree d, they agree at a random point with a probability of
-at most ``2 d/PRIME``. The points follow from the hash of the C text, so the certificate is the same on every machine.
+random functions. If the two differ as rational functions of degree d, they agree at a random point with a probability
+of at most ``2 d/PRIME``. The points follow from the hash of the C text, so that the certificate is the same everywhere.
 
 The certificate says nothing about rounding errors, and nothing about the truncation error but the order of the method.
 """
@@ -155,9 +155,10 @@ def _proof(step: StepUnderTest, suffix: str) -> Data:
     if one.digest() != read_batch(text, f"{name}_batch", file).digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to perform the same operations, got others")
     degrees = [_degree(step, one, point) for point in range(POINTS)]
-    wrong = (Fraction(2 * max(degrees), PRIME)) ** POINTS
+    wrong = Fraction(2 * max(degrees), PRIME) ** POINTS
+    power = wrong.denominator.bit_length() - wrong.numerator.bit_length() - 1
     return {"type": TYPES[suffix], "operations": one.counts(), "digest": one.digest(), "points": POINTS,
-            "wrong_with_probability_below": f"2^-{wrong.denominator.bit_length() - wrong.numerator.bit_length() - 1}"}  # fmt: skip
+            "wrong_with_probability_below": f"2^-{power}"}  # fmt: skip
 
 
 def _degree(step: StepUnderTest, operations: Operations, point: int) -> int:
@@ -174,5 +175,8 @@ def _degree(step: StepUnderTest, operations: Operations, point: int) -> int:
     exact = stepped(step.rates, step.method, values, values["dt"], _RANDOM, number)
     for (place, ours), formula in zip(computed.items(), exact, strict=True):
         if ours.value != _Residue.of(formula).value:
-            raise CertificateError(f"{step.name}.c: expected {place} to be the {step.method.formula}, got another formula")
-    return max(max(ours.degree, formula.degree) for ours, formula in zip(computed.values(), exact, strict=True))
+            raise CertificateError(
+                f"{step.name}.c: expected {place} to be the {step.method.formula}, got another formula"
+            )
+    degrees: list[int] = [each.degree for each in (*computed.values(), *map(_Residue.of, exact))]
+    return max(degrees)

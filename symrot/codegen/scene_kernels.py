@@ -104,7 +104,9 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     return Formulas(tuple(outputs), (*rates.named, *slopes.named.items())), tuple(arguments)
 
 
-def rates_jacobian_program(equations: Equations, name: str, chained: Formulas, arguments: Sequence[Argument]) -> Lowered:
+def rates_jacobian_program(
+    equations: Equations, name: str, chained: Formulas, arguments: Sequence[Argument]
+) -> Lowered:
     """Return the program of the rates and their derivatives, in the way that needs the fewest operations.
 
     ``chained`` and ``arguments`` are the result of :func:`rate_derivatives`.

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Union
+from typing import Any
 
 from symrot.codegen.lowering.lower import ANONYMOUS
 from symrot.codegen.lowering.tape import Operation
@@ -53,7 +53,7 @@ class TaylorSeries:
         return f"Taylor series of the motion up to dt^{self.order}"
 
 
-Method = Union[RungeKutta, TaylorSeries]
+Method = RungeKutta | TaylorSeries
 _HALF = Fraction(1, 2)
 RK4 = RungeKutta(
     "rk4", 4, (Fraction(0), _HALF, _HALF, Fraction(1)), ({}, {0: _HALF}, {1: _HALF}, {2: Fraction(1)}),
@@ -160,7 +160,7 @@ class _Recorder:
 
     def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
         """Return the program of the recorded operations that the outputs need; a result used once is not named."""
-        operations, roots = list(self.known), {name: self.index(value) for name, value in outputs.items()}
+        roots = {name: self.index(value) for name, value in outputs.items()}
         operations = list(self.known)
         uses = Counter(roots.values())
         needed = set(roots.values())

@@ -10,11 +10,11 @@ Three rules keep the derivatives short and finite where the values are finite:
 
 from collections.abc import Callable, Mapping, Sequence
 
-from sympy import Abs, Expr, Integer, Mul, Rational, S, Symbol, cos, sign, sin
+from sympy import Expr, Integer, Mul, Rational, S, Symbol, cos, sign, sin
 from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
-from symrot.kernels.removable import DERIVATIVES, copysign, explicit, select_ge, sinc
+from symrot.kernels.removable import DERIVATIVES, copysign, select_ge, sinc
 
 __all__ = ["Derivatives", "exact_derivative"]
 

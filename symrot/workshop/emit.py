@@ -139,8 +139,9 @@ def explain(scene: SceneSource) -> str:
 
 
 def emit(
-    kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None, jacobian: Sequence[str] = ()
-) -> Emitted:
+    kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None, jacobian: Sequence[str] = (),
+    step: str | None = None, order: int | None = None,
+) -> Emitted:  # fmt: skip
     """Return the text of a library kernel, or of a scene's own kernel; it is the same on every machine.
 
     Parameters
@@ -159,6 +160,11 @@ def emit(
         of arguments (``"omega"``) or of single components (``"omega_1"``). For a scene: ``"y"``, ``"omega"``, ``"q"``,
         a state, or a physical constant such as ``"A"``. The derivatives of ``dy`` by ``omega`` are the output
         ``dy_by_omega``, row by row: one row for each component of ``dy``.
+    step : str, optional
+        ``"rk4"``, ``"taylor"`` or ``"dop853"``: emit one time step of a scene instead of its rates, the function
+        ``next = f(t, x, p, dt)``, with C files for double and float and a test against values of 40 digits.
+    order : int, optional
+        Order of the step ``"taylor"``, 1 to 16 (default 8).
 
     Returns
     -------
@@ -189,6 +195,12 @@ def emit(
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
     from symrot.workshop.kernel_text import kernel_text
 
+    if step is not None:
+        from symrot.workshop.step_text import step_text
+
+        return Emitted.of(step_text(kernel, step, order, jacobian), target, bounds)
+    if order is not None:
+        raise InputError(f"order: expected a step as well, such as step='taylor', got only the order {order}")
     return Emitted.of(kernel_text(kernel, jacobian), target, bounds)
 
 

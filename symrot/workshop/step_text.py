@@ -1,6 +1,6 @@
 """The texts of one time step of a scene: C with test vectors, NumPy, JavaScript and the certificate of its formula."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
@@ -15,11 +15,12 @@ from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_pro
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
+from symrot.kernels.library import is_kernel
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
-from symrot.scene.scene import Scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
 
-__all__ = ["ORDER", "STEPS", "StepText", "step_method"]
+__all__ = ["ORDER", "STEPS", "StepText", "step_method", "step_text"]
 
 ORDER, LARGEST_ORDER = 8, 16
 SIZES = (Fraction(1, 1024), Fraction(1, 64), Fraction(-1, 256))  # sizes of the test vectors, s, for rates near 1/s
@@ -62,6 +63,16 @@ def step_method(name: str, order: int | None = None) -> Method:
     if order is not None and not 1 <= order <= LARGEST_ORDER:
         raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
     return STEPS[name](ORDER if order is None else order)
+
+
+def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> "StepText":
+    """Return the texts of a step of a scene; raise InputError for a library kernel or for derivatives of a step."""
+    if isinstance(scene, str) and is_kernel(scene):
+        raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
+    if jacobian:
+        raise InputError(f"jacobian: expected no derivatives of a step, got {', '.join(jacobian)} with the step {step}")
+    method = step_method(step, order)
+    return StepText(scene if isinstance(scene, Scene) else load_scene(scene), method)
 
 
 class StepText(KernelText):
@@ -142,13 +153,18 @@ class StepText(KernelText):
         """Raise CertificateError: a step has a certificate of its own kind."""
         raise CertificateError(f"{self.name}: expected a kernel, got a step, whose certificate states its formula only")
 
+    @cached_property
+    def certified(self) -> StepUnderTest:
+        """The step with its texts, as the object from which its certificate is made."""
+        description = self._description("c")
+        return StepUnderTest(
+            self.name, description.title, description.command, self._rates_program, self.method, self._program,
+            self.c_files(),
+        )  # fmt: skip
+
     def certificate(self, bounds: Bounds | None = None) -> str:
         """Return the text of the certificate; raise CertificateError if the C text does not compute the method."""
-        description, files = self._description("c"), self.c_files(bounds)
-        under_test = StepUnderTest(
-            self.name, description.title, description.command, self._rates_program, self.method, self._program, files
-        )
-        return step_certificate(under_test)
+        return step_certificate(self.certified)
 
     @cached_property
     def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
@@ -162,7 +178,9 @@ class StepText(KernelText):
         with mpmath.workdps(DIGITS):
             for place, size in enumerate(SIZES):
                 start = [float((Fraction(-1) ** i) * Fraction(i + 2 + place, 7)) for i in range(len(states))]
-                values: dict[str, Any] = {name: mpmath.mpf(x) for name, x in (parameters | dict(zip(states, start, strict=True))).items()}
+                values: dict[str, Any] = {
+                    name: mpmath.mpf(x) for name, x in (parameters | dict(zip(states, start, strict=True))).items()
+                }
                 scale = 1 + max(map(abs, parameters.values()), default=0.0)
                 dt = float(size) / 2 ** int(scale).bit_length()
                 after = stepped(
