@@ -13,9 +13,9 @@ the last place (ulp):
   has zeros, the solutions of x = tan x, which are no floating-point numbers, so its relative error has no bound. Its
   absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured 2.5
   instead of 4 for all numbers).
-- ``sine_bend``, ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the latter
-  for |x| <= pi (measured 3.1 and 3.2). Beyond, its absolute error is below 4 * 2^-53/x^2 (measured 1.1 instead of
-  4).
+- ``sine_bend``, ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the
+  second for |x| <= pi (measured 3.1 and 3.2). For larger |x| its absolute error is at most 4 * 2^-53/x^2 (measured 1.1
+  instead of 4).
 - ``arc_ratio``: within 4 ulp on the half circle on which quaternions lie (measured 1.6; batches 1.2).
 
 Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.

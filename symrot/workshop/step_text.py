@@ -200,13 +200,15 @@ class StepText(KernelText):
         count, parameters = len(self._vectors[0][0]), self.rates.inputs.parameters
         return "\n".join([
             f"/* Test of {self.name}: returns 0 if double and float agree with values of {DIGITS} digits. */",
-            "#include <math.h>", f'#include "{self.name}.h"', "",
+            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', "",
             f"#define STATES {count}", f"#define VECTORS {len(self._vectors)}", "",
             _table("vectors[VECTORS][2][STATES]", [[start, after] for start, _, after in self._vectors]),
             _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
             *([_table(f"parameters[{len(parameters)}]", list(parameters))] if parameters else []), "",
             *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
-            "int main(void)", "{", "    return check() || checkf();", "}",
+            "int main(void)", "{", "    const int failed = check() || checkf();",
+            f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with {DIGITS} digits");',
+            "    return failed;", "}",
         ]) + "\n"  # fmt: skip
 
     def _check(self, real: Real, tolerance: str) -> list[str]:
