@@ -70,8 +70,8 @@ def load_certificate(path: Path) -> Data:
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     if str(data.get("schema", "")).startswith("symrot.step/"):
         raise CertificateError(
-            f"{path}: expected the certificate of a kernel, got that of a step; `{data.get('regenerate')} -o DIR` proves "
-            "it again"
+            f"{path}: expected the certificate of a kernel, got that of a step; `{data.get('regenerate')} -o DIR` "
+            "proves it again"
         )
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:

@@ -79,7 +79,7 @@ def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
     listed = ", ".join(chosen)
     return replace(
         kernel, name=jacobian_name(kernel.name, variables), results=tuple(results),
-        domain=f"{kernel.domain}; derivatives: where no divisor is zero, and not where a choice or a sign changes",
+        domain=f"{kernel.domain}; derivatives: where no divisor is zero and no choice changes",
         title=f"{kernel.title}; with its derivatives by {listed}, row by row",
         named=(*kernel.named, *slopes.named.items()), laws=lambda: _laws(kernel, chosen),
     )  # fmt: skip
