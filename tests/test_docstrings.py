@@ -186,10 +186,12 @@ def test_the_python_page_lists_every_public_name():
 
 
 OPTIONAL = {
+    "argcomplete",
     "matplotlib",
     "mpl_toolkits",
     "PIL",
     "imageio_ffmpeg",
+    "tqdm",
     "heyoka",
     "symforce",
     "casadi",

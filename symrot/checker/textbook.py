@@ -18,7 +18,7 @@ from symrot.checker.decide.decision import decide_equation
 from symrot.checker.rounding import rounded_value
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
-from symrot.textbook import Document, errata
+from symrot.textbook import Condition, Document, conditions, errata
 
 __all__ = ["LOSSES", "OUTCOMES", "Finding", "differs_by_lost_characters", "finding_of", "findings"]
 
@@ -53,9 +53,13 @@ class Finding:
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
         The trees of the claim by place, and the corrected trees.
+    is_proposed : bool
+        Whether the corrected formula was proposed by a person, and not found by the search for repairs.
     conditions : tuple of str
         Conditions that the document does not state, and that quantities with their usual signs may break. A true
         formula needs all of these conditions; a conditional formula needs any one of them.
+    words : str
+        The words for the conditions; empty if the formulas say enough.
     """
 
     claim: dict[str, Any]
@@ -65,7 +69,9 @@ class Finding:
     right: str = ""
     parts: Mapping[str, Node] = field(default_factory=dict)
     corrected: Mapping[str, Node] = field(default_factory=dict)
+    is_proposed: bool = False
     conditions: tuple[str, ...] = ()
+    words: str = ""
 
     @property
     def reason(self) -> str:
@@ -82,29 +88,41 @@ def findings(
 ) -> Iterator[Finding]:
     """Yield the result of checking each claim of a document, in the order of the document."""
     proposals = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
+    unstated = {condition.claim: condition for condition in conditions()}
     for claim in read_claims(document.path):
         progress(f"checking {claim.id} ..")
-        yield finding_of(document.claims[claim.id], claim, repair, proposals.get(claim.id, {}))
+        proposal, condition = proposals.get(claim.id, {}), unstated.get(claim.id)
+        yield finding_of(document.claims[claim.id], claim, repair, proposal, condition)
 
 
-def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str]) -> Finding:
-    """Return the result of checking one claim with its ``data``; the proposed correction may be empty."""
+def finding_of(
+    data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str], condition: Condition | None = None
+) -> Finding:
+    """Return the result of checking one claim with its ``data``.
+
+    The proposed correction may be empty. A claim that is false, but true under the proposed ``condition``, is
+    conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
+    """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
     lost = data.get("lost", [])
     readings = tuple(other for other in claim.alternatives if _is_reading(claim, other, lost))
     claim = replace(claim, alternatives=readings)
     verdict, other = check_readings(claim, repair)
+    listed, words = ((), "") if condition is None else (condition.hypotheses, condition.words)
     if verdict:
-        conditions = tuple(condition for condition in verdict.conditions if _may_be_broken(condition))
-        return Finding(data, verdict, "conditional" if conditions else "holds", conditions=conditions)
+        broken = tuple(text for text in verdict.conditions if text in listed or _may_be_broken(text))
+        return Finding(data, verdict, "conditional" if broken else "holds", conditions=broken, words=words)
     if other is not None:
         return Finding(data, verdict, "other reading", other.text, other.text)
     if verdict.verdict != "false":
         outcome = "conditional" if verdict.verdict == "conditional" else "undecided"
-        return Finding(data, verdict, outcome, conditions=verdict.requires)
+        return Finding(data, verdict, outcome, conditions=verdict.requires, words=words)
     if claim.relation is None:
         return Finding(data, verdict, "fails", right=rounded_value(claim))
+    if condition is not None:
+        _prove(claim, condition)
+        return Finding(data, verdict, "conditional", conditions=listed, words=words)
     parts = {"left": claim.relation[1], "right": claim.relation[2], **dict(claim.define)}
     corrected = _correction(claim, verdict, proposal)
     is_loss = corrected and all(
@@ -112,7 +130,7 @@ def finding_of(data: dict[str, Any], claim: Claim, repair: bool, proposal: Mappi
     )
     right = " with ".join(f"{text(tree)}" if place in ("left", "right") else f"{place} = {text(tree)}"
                           for place, tree in corrected.items())  # fmt: skip
-    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected)
+    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected, bool(proposal))
 
 
 def _may_be_broken(condition: str) -> bool:
@@ -129,6 +147,15 @@ def _may_be_broken(condition: str) -> bool:
         any(node.kind == "name" for node in side) for side in sides
     )
     return is_on_an_angle or (sign != "!=" and has_difference)
+
+
+def _prove(claim: Claim, condition: Condition) -> None:
+    """Raise InputError for a condition under which the exact engine does not prove the claim."""
+    declared = Declared({*claim.symbols, *(name for name, _ in claim.define)}, claim.functions)
+    hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
+    if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
+        texts = " and ".join(condition.hypotheses)
+        raise InputError(f"{claim.id}: condition: expected one under which the claim is true, got {texts!r}")
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:

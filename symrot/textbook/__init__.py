@@ -9,12 +9,28 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 
-__all__ = ["DOCUMENTS", "Document", "Erratum", "PrintedFormula", "document", "errata"]
+__all__ = [
+    "DOCUMENTS", "LINE_KINDS", "Condition", "Document", "Erratum", "Line", "PrintedFormula", "conditions", "document",
+    "errata", "lines",
+]  # fmt: skip
 
 DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
 """The short names of the documents."""
+
+LINE_KINDS = {
+    "operators": "the signs of a formula whose letters the extraction put on other lines",
+    "letters": "a formula whose letters the double encoding garbled",
+    "repeats": "a formula that stands elsewhere too",
+    "input": "what is given in a worked example",
+    "definition": "a symbol, a component or a form of an equation is introduced",
+    "law": "a law of mechanics that the document takes as given",
+    "assumption": "a choice or an approximation that the document makes",
+    "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
+    "other": "the title of another document",
+}
+"""Kind of a line that states no formula of its own -> its description. The first four kinds name a claim."""
 
 
 class Document(NamedTuple):
@@ -51,6 +67,25 @@ class Erratum(NamedTuple):
     formulas: tuple[PrintedFormula, ...]
 
 
+class Condition(NamedTuple):
+    """A condition that a document does not state: the claim that holds under it, its formulas, and its words."""
+
+    claim: str
+    hypotheses: tuple[str, ...]
+    words: str
+
+
+class Line(NamedTuple):
+    """A line of a document with a relation sign that states no formula of its own.
+
+    ``kind`` is a key of :data:`LINE_KINDS`, ``claim`` the claim that states the formula, or an empty text.
+    """
+
+    printed: str
+    kind: str
+    claim: str
+
+
 def document(name: str) -> Document:
     """Return a document by its short name.
 
@@ -60,7 +95,8 @@ def document(name: str) -> Document:
         If no document has this name.
     """
     if name not in DOCUMENTS:
-        raise InputError(f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}")
+        message = f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}"
+        raise InputError(with_hint(message, name, DOCUMENTS))
     path = Path(__file__).with_name(f"{name}.toml")
     content = tomllib.loads(path.read_text(encoding="utf-8"))
     claims = {claim["id"]: claim for claim in content["claim"]}
@@ -69,11 +105,26 @@ def document(name: str) -> Document:
 
 def errata() -> tuple[Erratum, ...]:
     """Return the errors of all documents, in the order of the documents."""
-    content = tomllib.loads(Path(__file__).with_name("errata.toml").read_text(encoding="utf-8"))
     return tuple(
         Erratum(entry["title"], entry["why"], tuple(map(_printed_formula, entry["formula"])))
-        for entry in content["error"]
+        for entry in _content("errata")["error"]
     )
+
+
+def conditions() -> tuple[Condition, ...]:
+    """Return the conditions that documents do not state, and that the exact engine proves but does not find."""
+    return tuple(
+        Condition(entry["claim"], tuple(entry["given"]), entry["words"]) for entry in _content("errata")["condition"]
+    )
+
+
+def lines(name: str) -> tuple[Line, ...]:
+    """Return the lines of a document that state no formula of their own; ``name`` is one of :data:`DOCUMENTS`."""
+    return tuple(Line(*entry) for entry in _content("lines")[name])
+
+
+def _content(file: str) -> dict[str, Any]:
+    return tomllib.loads(Path(__file__).with_name(f"{file}.toml").read_text(encoding="utf-8"))
 
 
 def _printed_formula(entry: dict[str, Any]) -> PrintedFormula:

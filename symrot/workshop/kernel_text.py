@@ -8,6 +8,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
+from pathlib import Path
 from typing import Any, ClassVar
 
 from symrot.certificates.certificate import KernelUnderTest, certificate_text, with_sections
@@ -30,12 +31,13 @@ from symrot.codegen.scene_kernels import (
     with_values,
 )
 from symrot.dynamics.equations import Equations, equations_of_motion
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.program import Argument, Program
 from symrot.kernels.jacobian import jacobian_name
-from symrot.kernels.library import definition, is_kernel
+from symrot.kernels.library import definition, is_kernel, kernel_names
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
+from symrot.scene.file import shipped_names
 from symrot.scene.scene import Scene, SceneSource, load_scene
 
 __all__ = ["SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
@@ -128,8 +130,9 @@ class LibraryText(KernelText):
 
     @cached_property
     def _c(self) -> tuple[str, str]:
-        """Return the C source and its header; operations are printed and bounded first, because the head states their
-        bounds.
+        """Return the C source and its header file.
+
+        The rounding errors of the operations are bounded first, because the opening comment states the bounds.
         """
         program = kernel_program(self.name)
         description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))
@@ -246,8 +249,15 @@ def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) 
     """
     if isinstance(kernel, KernelText):
         return kernel
-    if isinstance(kernel, str) and is_kernel(kernel):
-        return _library_text(jacobian_name(kernel, jacobian))
+    if isinstance(kernel, str):
+        if is_kernel(kernel):
+            return _library_text(jacobian_name(kernel, jacobian))
+        hint = nearest(kernel, [*kernel_names(), *shipped_names()])
+        if kernel.isidentifier() and kernel not in shipped_names() and not Path(kernel).exists():
+            after = f" ({hint})" if hint else ""
+            raise InputError(
+                f"expected a kernel of `symrot emit --list`, a scene or a scene file, got {kernel[:60]!r}{after}"
+            )
     return scene_text(kernel, jacobian)
 
 

@@ -1,19 +1,27 @@
 """Which formulas of the four documents no claim covers: ``python -m tests.textbook.coverage FOLDER``.
 
 FOLDER holds the texts of the documents as they were extracted, ``000_*.txt`` to ``003_*.txt`` in the order of
-``symrot.textbook.DOCUMENTS``. A piece of text with a formula is a line with a relation sign, or the text before the
-number of an equation. It is covered if a claim prints half of it, or names the number as its place.
+``symrot.textbook.DOCUMENTS``. A piece of text with a formula is the text around the relation signs of a line, or before
+the number of an equation. It is covered if a claim prints half of it, or names the number as its place, or if
+``symrot/textbook/lines.toml`` says why it states no formula of its own.
+
+With ``--write``, the pieces are written to ``tests/reference/textbook_pieces.txt``, which tests read in place of the
+documents.
 """
 
 import re
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
-from symrot.textbook import DOCUMENTS, document
+from symrot.textbook import DOCUMENTS, document, lines
 
-__all__ = ["Piece", "is_covered", "main", "pieces", "plain"]
+__all__ = ["PIECES", "Piece", "is_covered", "main", "pieces", "plain", "reference_pieces", "uncovered"]
+
+PIECES = Path(__file__).parents[1] / "reference" / "textbook_pieces.txt"
+AROUND = 50
+"""The most characters of a piece before and after a relation sign."""
 
 RELATION = re.compile(r"[=≠≤≥≈<>∫∑√]")
 NUMBERED = re.compile(r"\((12\.\d+)\)")
@@ -63,8 +71,25 @@ def pieces(text: str) -> Iterator[Piece]:
         if places:
             for start, end in zip([0, *places], places, strict=False):
                 yield number, line[max(start, end - 90) : end]
-        elif RELATION.search(line) and len(plain(line)) >= SHORTEST:
-            yield number, line
+        elif len(plain(line)) >= SHORTEST:
+            for start, end in _windows(line):
+                yield number, line[start:end]
+
+
+def _windows(line: str) -> list[tuple[int, int]]:
+    """Return the places of the text around the relation signs of a line; places that overlap are joined.
+
+    A line with a double encoding, in which a letter is several characters, is one place.
+    """
+    places: list[tuple[int, int]] = []
+    if MATHEMATICAL in line and RELATION.search(line):
+        return [(0, len(line))]
+    for match in RELATION.finditer(line):
+        start, end = max(0, match.start() - AROUND), min(len(line), match.end() + AROUND)
+        if places and start <= places[-1][1]:
+            start = places.pop()[0]
+        places.append((start, end))
+    return places
 
 
 def is_covered(piece: str, printed: str, numbers: set[str]) -> bool:
@@ -77,19 +102,46 @@ def is_covered(piece: str, printed: str, numbers: set[str]) -> bool:
     return any(text[start : start + size] in printed for start in range(len(text) - size + 1))
 
 
+def reference_pieces() -> dict[str, list[Piece]]:
+    """Return the pieces of each document as they were written by ``--write``."""
+    by_document: dict[str, list[Piece]] = {name: [] for name in DOCUMENTS}
+    for line in PIECES.read_text(encoding="utf-8").splitlines():
+        name, number, piece = line.split(":", 2)
+        by_document[name].append((int(number), piece))
+    return by_document
+
+
+def uncovered(name: str, every: Sequence[Piece]) -> list[Piece]:
+    """Return the pieces of a document that no claim and no entry of ``lines.toml`` covers."""
+    claims = document(name).claims.values()
+    printed = "\n".join(plain(claim["printed"]) for claim in claims)
+    numbers = {number for claim in claims for number in _numbers(claim["where"])}
+    others = {plain(line.printed) for line in lines(name)}
+    return [
+        (number, piece)
+        for number, piece in every
+        if not is_covered(piece, printed, numbers) and not _is_listed(plain(piece), others)
+    ]
+
+
+def _is_listed(piece: str, others: Collection[str]) -> bool:
+    return piece in others or any(len(other) > SHORTEST and other in piece for other in others)
+
+
 def main(arguments: list[str]) -> int:
-    """Print the pieces that no claim covers, and a count for each document."""
-    (folder,) = arguments
+    """Print the pieces that are not covered, and a count for each document."""
+    folder, *options = arguments
+    written = []
     for place, name in enumerate(DOCUMENTS):
         (path,) = Path(folder).glob(f"{place:03}_*.txt")
-        claims = document(name).claims.values()
-        printed = "\n".join(plain(claim["printed"]) for claim in claims)
-        numbers = {number for claim in claims for number in _numbers(claim["where"])}
         every = list(pieces(path.read_text(encoding="utf-8")))
-        missing = [(line, piece) for line, piece in every if not is_covered(piece, printed, numbers)]
-        for line, piece in missing:
-            print(f"{name}:{line}: {piece.strip()[:150]}")
+        written += [f"{name}:{number}:{piece.strip()}\n" for number, piece in every]
+        missing = uncovered(name, every)
+        for number, piece in missing:
+            print(f"{name}:{number}: {piece.strip()[:150]}")
         print(f"{name}: {len(every) - len(missing)} of {len(every)} pieces with a formula are covered")
+    if options == ["--write"]:
+        PIECES.write_text("".join(written), encoding="utf-8")
     return 0
 
 

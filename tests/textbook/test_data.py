@@ -22,7 +22,7 @@ BUILT_IN = set(
     re.findall(
         r"\w+",
         "Rx Ry Rz skew vee cross dot det transpose inverse trace eye diag Matrix hstack qmul dcm_of "
-        "sqrt sin cos tan cot sec csc atan2 diff integrate pi",
+        "sqrt sin cos tan cot sec csc exp atan2 diff integrate pi",
     )
 )
 TOKEN = re.compile(

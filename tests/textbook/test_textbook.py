@@ -12,7 +12,7 @@ from symrot.errors import InputError
 from symrot.report import errata
 from symrot.report.errata.entries import condition_words, entries
 from symrot.report.errata.page import html, page
-from symrot.textbook import DOCUMENTS, document
+from symrot.textbook import DOCUMENTS, Condition, conditions, document
 from symrot.textbook import errata as errata_of_documents
 
 TESTS = Path(__file__).parents[1]
@@ -115,7 +115,16 @@ def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(survey):
     conditional = [item for _, items in survey for item in items if item.outcome == "conditional"]
     assert conditional and all(item.conditions for item in conditional)
     assert page(survey).count("### Conditions left out") == 3
-    assert {item.verdict.verdict for item in conditional} == {"true", "conditional"}
+    assert {item.verdict.verdict for item in conditional} == {"true", "conditional", "false"}
+    proposed = {condition.claim for condition in conditions()}
+    assert {item.claim["id"] for item in conditional if item.words} == proposed
+
+
+def test_a_condition_under_which_a_claim_is_not_proven_is_refused():
+    source = document("brown")
+    claim = next(claim for claim in read_claims(source.path) if claim.id == "brown-prism-equation-axes")
+    with pytest.raises(InputError, match="expected one under which the claim is true, got 'cos"):
+        finding_of(source.claims[claim.id], claim, True, {}, Condition(claim.id, ("cos(f) == 0",), ""))
 
 
 @pytest.mark.parametrize("suffix", ["md", "html"])

@@ -120,11 +120,15 @@ def _proof(item: Finding, letters: Mapping[str, str]) -> str:
     """Return one sentence on how an error was proven."""
     against = item.claim["against"]
     example = _example(item, letters)
+    if not item.parts:
+        value = f"`{item.verdict.counterexample.lhs}`" if item.verdict.counterexample else "another number"
+        return f"The value of the reference ({against}) is {value}, which rounds to {item.right}."
     if not item.corrected:
         return f"The printed formula differs from the reference ({against}){example}."
+    origin = "proposed by a person" if item.is_proposed else "found by a search near the printed formula"
     return (
-        f"The difference from the reference ({against}) is exactly zero for the corrected formula, and not for the "
-        f"printed one{example}."
+        f"The correction was {origin}. Its difference from the reference ({against}) is exactly zero; that of the "
+        f"printed formula is not{example}."
     )
 
 

@@ -17,8 +17,8 @@ TITLE = "Errata"
 ABOUT = (
     "These are remarks for the authors and readers of four documents on rigid-body rotation. Every formula, table "
     "entry and worked number was read into a claim, compared with a result that is derived from first principles, and "
-    "decided exactly. A correction is printed only if it is proven. The difference between the printed and the "
-    "corrected formula is framed."
+    "decided exactly. A correction is found by a search near the printed formula, or proposed by a person; it is "
+    "printed only if it is proven. The difference between the printed and the corrected formula is framed."
 )
 EXTRACTION = (
     "The documents are known here as text extracted from PDF files, which loses characters. A line counts as an error "
@@ -65,7 +65,7 @@ def _blocks(survey: Survey) -> Iterator[Block]:
         for entry in errors_of_document:
             number += 1
             yield from _of_entry(number, entry)
-        yield from _of_conditions([item for item in items if item.outcome == "conditional"])
+        yield from _of_conditions(source.name, [item for item in items if item.outcome == "conditional"])
         yield from _of_extraction([item for item in items if item.outcome in ("other reading", "fails or lost")])
 
 
@@ -85,8 +85,11 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
         yield Block("extracted", line)
 
 
-def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the list of conditions without which formulas of a document do not hold."""
+def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
+    """Yield the list of conditions without which formulas of a document do not hold.
+
+    A formula is named by the id of its claim, in words and without the name of the document.
+    """
     if not items:
         return
     yield Block("entry", "Conditions left out")
@@ -94,11 +97,13 @@ def _of_conditions(items: Sequence[Finding]) -> Iterator[Block]:
     grouped: dict[str, dict[str, list[str]]] = {}
     for item in items:
         joint = " or " if item.verdict.verdict == "conditional" else " and "
-        words = joint.join(map(condition_words, item.conditions))
-        grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(f"`{item.claim['id']}`")
+        words = item.words or joint.join(map(condition_words, item.conditions))
+        grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(
+            str(item.claim["id"]).removeprefix(f"{document_name}-").replace("-", " ")
+        )
     for words, places in grouped.items():
         listed = "; ".join(f"{where}: {', '.join(names)}" for where, names in places.items())
-        yield Block("item", f"{words} -- {listed}")
+        yield Block("item", f"{words}. Where: {listed}.")
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
