@@ -18,12 +18,14 @@ import argparse
 import ctypes
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache as memoised
 from itertools import product
 from math import frexp, inf, ldexp, pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from sympy import Symbol, lambdify
 
 from symrot.build import cache
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
@@ -66,13 +68,21 @@ class Measured:
     where: tuple[float, ...]
 
 
+@memoised
+def _quotient(name: str) -> Callable[[Any], Any]:
+    """Return the quotient of a function with a removable singularity, for numbers of mpmath."""
+    x = Symbol("x", real=True)
+    function: Callable[[Any], Any] = lambdify(x, REMOVABLE[name].formula(x), "mpmath")
+    return function
+
+
 def _series(name: str, x: Any) -> Any:
     """Return the value of a function with a removable singularity: its series near zero, its quotient elsewhere."""
     import mpmath
 
     which = REMOVABLE[name]
     if abs(x) > 1:
-        return (x - mpmath.sin(x)) / x**3 if name == "sine_gap" else (mpmath.sin(x) - x * mpmath.cos(x)) / x**3
+        return _quotient(name)(x)
     return mpmath.fsum(mpmath.mpf(a.numerator) / a.denominator * x ** (2 * k) for k, a in enumerate(which.taylor(26)))
 
 
@@ -112,6 +122,9 @@ FUNCTIONS = (
     Function("sine_gap", lambda x: _series("sine_gap", x), "rotation_vector_body_jacobian"),
     Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", reach=pi),
     Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", beyond=pi),
+    Function("sine_bend", lambda x: _series("sine_bend", x), "rotation_vector_body_jacobian_by_v"),
+    Function("tangent_bend", lambda x: _series("tangent_bend", x), "rotation_vector_body_rates_by_v", reach=pi),
+    Function("tangent_bend", lambda x: _series("tangent_bend", x), "rotation_vector_body_rates_by_v", beyond=pi),
     Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion"),
     Function("atan2", _atan2, "rotation_vector_of_quaternion", _BATCH),
     Function("sin", _sin, "rotation_vector_quaternion", _BATCH),

@@ -27,7 +27,7 @@ from symrot.certificates.rounding.bounds import check_bounds, check_section
 from symrot.certificates.rounding.bounds_text import library_region, library_section
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
-from symrot.kernels.library import kernel_names
+from symrot.kernels.library import is_kernel
 from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["audit", "load_certificate"]
@@ -68,6 +68,11 @@ def load_certificate(path: Path) -> Data:
         raise CertificateError(f"{path}: expected a certificate as JSON, but the text is not JSON ({reason})") from None
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
+    if str(data.get("schema", "")).startswith("symrot.step/"):
+        raise CertificateError(
+            f"{path}: expected the certificate of a kernel, got that of a step; `{data.get('regenerate')} -o DIR` "
+            "proves it again"
+        )
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
@@ -183,7 +188,7 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 def _bounds(path: Path, data: Data, source: str) -> str:
     """Return a sentence about the rounding error bounds; raise CertificateError if they do not hold for the C text."""
     section = data.get("rounding")
-    own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
+    own = library_section(data["kernel"], source) if is_kernel(data["kernel"]) else None
     if section is None:
         if isinstance(own, dict):
             raise CertificateError(

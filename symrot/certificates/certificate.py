@@ -251,7 +251,7 @@ def _series(proof: Equality) -> list[list[Any]]:
             list(map(str, REMOVABLE[each.function].taylor(each.terms))),
             str(each.relative),
         ]
-        for each in truncations.values()
+        for each in (truncations[name] for name in REMOVABLE if name in truncations)
     ]
 
 

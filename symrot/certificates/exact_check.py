@@ -51,9 +51,16 @@ SAFE = {  # function of emitted files -> its formula, and its value in an except
     "arc_ratio": ("atan2(x, y)/x", "1/y if x == 0"),
     "sine_gap": ("(x - sin(x))/x**3", "{series} if x*x < {split}"),
     "tangent_gap": ("(sin(x) - x*cos(x))/x**3", "{series} if x*x < {split}"),
+    "sine_bend": ("(2*x + x*cos(x) - 3*sin(x))/x**5", "{series} if x*x < {split}"),
+    "tangent_bend": ("((3 - x**2)*sin(x) - 3*x*cos(x))/x**5", "{series} if x*x < {split}"),
     "select_ge": ("w", "z if x >= y"),
 }
-TAYLOR = {"sine_gap": lambda k: 1, "tangent_gap": lambda k: 2 * k + 2}  # times (-1)^k x^(2 k)/(2 k + 3)!
+TAYLOR = {  # coefficient of (-1)^k x^(2 k)
+    "sine_gap": lambda k: Fraction(1, math.factorial(2 * k + 3)),
+    "tangent_gap": lambda k: Fraction(2 * k + 2, math.factorial(2 * k + 3)),
+    "sine_bend": lambda k: Fraction(2 * k + 2, math.factorial(2 * k + 5)),
+    "tangent_bend": lambda k: Fraction(4 * (k + 1) * (k + 2), math.factorial(2 * k + 5)),
+}
 FACTS = {  # name -> two identities of functions, written as left = right = left = right
     "sum": "sin(X + Y) = sin(X)*cos(Y) + cos(X)*sin(Y) = cos(X + Y) = cos(X)*cos(Y) - sin(X)*sin(Y)",
     "odd": "sin(-X) = -sin(X) = cos(-X) = cos(X)",
@@ -299,9 +306,7 @@ class KernelCheck:
         """Check that a helper function of the C file computes its formula, or an accurate series near zero."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
-            taylor = [
-                (-1) ** k * Fraction(TAYLOR[bare](k), math.factorial(2 * k + 3)) for k in range(len(coefficients) + 1)
-            ]
+            taylor = [(-1) ** k * TAYLOR[bare](k) for k in range(len(coefficients) + 1)]
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])

@@ -12,6 +12,9 @@ from symrot.dynamics.equations import Equations
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, evaluate
 from symrot.kernels.definition import Definition, Law
+from symrot.kernels.derivative import exact_derivative
+from symrot.kernels.jacobian import BY
+from symrot.kernels.removable import explicit
 from symrot.kinematics.quaternion import quaternion_product
 from symrot.symbols import constant, omega_b
 
@@ -46,16 +49,20 @@ def scene_kernel_under_test(
     parameters: Sequence[tuple[str, Node]],
     description: Description,
     files: Mapping[str, str],
+    outputs: Mapping[str, Expr],
+    named: Sequence[tuple[Symbol, Expr]],
 ) -> KernelUnderTest:
     """Return the kernel of a scene's equations of motion with all that its certificate states.
 
-    ``parameters`` gives the kernel's arguments that stand for formulas in the scene's physical constants.
+    ``parameters`` gives the kernel's arguments that stand for formulas in the scene's physical constants; ``outputs``
+    are the formulas of the rates and of their derivatives, by component, and ``named`` the quantities in them.
     """
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
-    (target,) = (a for a in program.signature.arguments if a.role == "out")
+    targets = (a for a in program.signature.arguments if a.role == "out")
+    results = tuple((a, tuple(outputs[component] for component, *_ in a.components)) for a in targets)
+    laws = (*scene_laws(equations), *_derivative_laws(equations, tuple(outputs)))
     return KernelUnderTest(
-        program.signature.name, description.title, description, inputs,
-        ((target, equations.rates),), equations.definitions, scene_laws(equations), files, ONLY_DOUBLE,
+        program.signature.name, description.title, description, inputs, results, tuple(named), laws, files, ONLY_DOUBLE,
         {name: _expression(node) for name, node in parameters},
     )  # fmt: skip
 
@@ -63,6 +70,20 @@ def scene_kernel_under_test(
 def _expression(node: Node) -> Expr:
     """Convert a formula in a scene's physical constants from its syntax tree to a SymPy expression."""
     return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
+
+
+def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
+    """Return the law that each derivative among the outputs is the exact derivative of its rate, if there are any."""
+    rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
+    vanishing = []
+    for output in outputs:
+        rate, by, variable = output.partition(BY)
+        if by:
+            formula = explicit(rates[rate])
+            symbols = {str(symbol): symbol for symbol in formula.free_symbols}
+            slope = exact_derivative(formula, symbols[variable]) if variable in symbols else 0
+            vanishing.append(constant(output) - slope)
+    return (Law("the derivatives are those of the rates", tuple(vanishing)),) if vanishing else ()
 
 
 class _ConstantsByName(dict[str, Symbol]):

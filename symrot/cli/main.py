@@ -191,11 +191,13 @@ def _explain(options: Namespace) -> int:
 
 def _emit(options: Namespace) -> int:
     from symrot.workshop import kernel_files as kernels
-    from symrot.workshop.kernel_text import kernel_text
 
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
                          "(see `symrot emit --help`)")  # fmt: skip
+    for option in ("jacobian", "step", "order"):
+        if getattr(options, option) is not None and not options.kernel:
+            raise InputError(f"--{option}: expected a KERNEL or SCENE as well (see `symrot emit --help`)")
     if options.list:
         say(kernels.kernel_lines())
         return OK
@@ -208,7 +210,7 @@ def _emit(options: Namespace) -> int:
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, progress)
     else:
-        kernel = kernel_text(options.kernel)
+        kernel = kernels.chosen_text(options.kernel, options.jacobian, options.step, options.order)
         bounds = kernels.stored_bounds(kernel, options.directory) if options.target in (None, "c") else None
         texts = kernels.kernel_files(kernel, options.target or "c", bounds)
         if options.directory is None:
@@ -402,6 +404,10 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--target", choices=TARGETS, help="language (default: c for a kernel, all for --all and --check)"
     )
+    parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
+                        "such as omega,q, or by constants of a scene")  # fmt: skip
+    parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
+    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder to write to, or to compare with --check (default: standard output for a kernel, "
                         "otherwise ./generated)")  # fmt: skip

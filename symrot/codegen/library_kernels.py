@@ -1,14 +1,15 @@
 """Straight-line programs of the library's kernels, derived from their formulas; constants such as pi become numbers."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 
-from symrot.codegen.lowering.lower import lower
+from symrot.codegen.derivatives import Formulas, cheapest, ways
 from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node, children, evaluate
 from symrot.kernels.definition import Box, Definition
+from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition
 
 __all__ = ["kernel_description", "kernel_program"]
@@ -16,10 +17,13 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name."""
+    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name.
+
+    A kernel with derivatives is computed in the way that needs the fewest operations.
+    """
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
-    lowered = lower(signature, kernel.formulas, kernel.named, parameter_argument="constant_")
+    lowered = cheapest(signature, _ways(name, kernel), "constant_")
     known = {"pi": number.PI}
     values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
     program = lowered.program
@@ -28,6 +32,18 @@ def kernel_program(name: str) -> Program:
         tuple((name, _with(node, values)) for name, node in program.temporaries),
         tuple((name, _with(node, values)) for name, node in program.outputs),
     )
+
+
+def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
+    """Return the formulas of a kernel, in each way to compute them."""
+    formulas = Formulas(kernel.formulas, kernel.named)
+    base, *variables = name.split(BY)
+    if not variables:
+        return (formulas,)
+    plain = definition(base)
+    entries = [(output, variable) for output, by, variable in (name.partition(BY) for name, _ in kernel.formulas) if by]
+    groups = [[component for component, *_ in argument.components] for argument in kernel.inputs]
+    return ways(Formulas(plain.formulas, plain.named), formulas, kernel_program(base), entries, groups)
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:

@@ -1,24 +1,37 @@
 """Kernels of a scene: programs and C code of its rates (time derivatives of the states) and other quantities."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 from sympy import Expr, Symbol
 
 from symrot import symbols
+from symrot.codegen.derivatives import Formulas, cheapest, ways
 from symrot.codegen.lowering.lower import Lowered, lower
 from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.codegen.printing.c_source import c_function, c_name
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
 from symrot.dynamics.structure import Structure
+from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import text
+from symrot.kernels.derivative import Derivatives
+from symrot.kernels.jacobian import BY, jacobian_argument
 from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
-__all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
+__all__ = [
+    "derive_scene_kernel",
+    "rate_derivatives",
+    "rates_jacobian_program",
+    "rates_program",
+    "rates_source",
+    "scene_description",
+    "with_values",
+]
 
 MEANING = {
     **{f"omega_{i + 1}": "angular velocity, body components" for i in range(3)},
@@ -42,13 +55,94 @@ def _state_argument(equations: Equations) -> Argument:
     return Argument("y", "in", tuple((str(s), _unit(s), _meaning(s)) for s in equations.states))
 
 
-def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of the equations of motion as the program ``name``, with parameters."""
+def _rates_argument(equations: Equations) -> Argument:
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
     results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
-    signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
-    return lower(signature, [(f"d{s}", r) for s, r in zip(equations.states, equations.rates, strict=True)],
-                 equations.definitions)  # fmt: skip
+    return Argument("dy", "out", results)
+
+
+def _rates(equations: Equations) -> Formulas:
+    outputs = tuple((f"d{state}", rate) for state, rate in zip(equations.states, equations.rates, strict=True))
+    return Formulas(outputs, equations.definitions)
+
+
+def rates_program(equations: Equations, name: str) -> Lowered:
+    """Return the right-hand side ``dy/dt`` of the equations of motion as the program ``name``, with parameters."""
+    signature = Signature(name, (TIME, _state_argument(equations), _rates_argument(equations)))
+    rates = _rates(equations)
+    return lower(signature, rates.outputs, rates.named)
+
+
+def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Formulas, tuple[Argument, ...]]:
+    """Return the rates of a scene with their derivatives as formulas, and the output arrays for both.
+
+    Parameters
+    ----------
+    equations : Equations
+        The equations of motion.
+    variables : sequence of str
+        ``"y"`` (all states), ``"omega"``, ``"q"`` or ``"angles"`` (some states), a single state, ``"t"``, or a physical
+        constant of the equations.
+
+    Raises
+    ------
+    InputError
+        If the equations contain no such state or constant, or if one is named twice.
+    """
+    chosen = {name: _variables(equations, name) for name in variables}
+    every = [symbol for symbols_ in chosen.values() for symbol in symbols_]
+    if len(set(every)) < len(every) or len(chosen) < len(variables):
+        raise InputError(f"expected each state and constant once in the derivatives by {', '.join(variables)}")
+    rates, target = _rates(equations), _rates_argument(equations)
+    slopes, outputs, arguments = Derivatives(rates.named), list(rates.outputs), [target]
+    for name, by in chosen.items():
+        described = tuple((str(symbol), _unit_of_variable(symbol), "") for symbol in by)
+        argument = jacobian_argument(target, name, described)
+        entries = [slopes.of(rate, symbol) for rate, symbol in product(equations.rates, by)]
+        outputs += zip((component for component, *_ in argument.components), entries, strict=True)
+        arguments.append(argument)
+    return Formulas(tuple(outputs), (*rates.named, *slopes.named.items())), tuple(arguments)
+
+
+def rates_jacobian_program(
+    equations: Equations, name: str, chained: Formulas, arguments: Sequence[Argument]
+) -> Lowered:
+    """Return the program of the rates and their derivatives, in the way that needs the fewest operations.
+
+    ``chained`` and ``arguments`` are the result of :func:`rate_derivatives`.
+    """
+    rates, states = _rates(equations), _state_argument(equations)
+    held = {str(s) for _, formula in (*rates.outputs, *rates.named) for s in formula.free_symbols}
+    inputs = {"t", *(str(state) for state in equations.states), *(str(symbol) for symbol, _ in rates.named)}
+    constants = tuple((constant, "", "") for constant in sorted(held - inputs))
+    free = Signature(name, (TIME, states, Argument("constants", "in", constants), _rates_argument(equations)))
+    base = lower(free, rates.outputs, rates.named, "number_")
+    ways_ = [chained]
+    if not base.parameters:  # numbers such as pi are no inputs, so that only the chain rule applies
+        entries = [(out, by) for out, mark, by in (each.partition(BY) for each, _ in chained.outputs) if mark]
+        ways_ = list(ways(rates, chained, base.program, entries, [[str(state) for state in equations.states]]))
+    return cheapest(Signature(name, (TIME, states, *arguments)), ways_)
+
+
+def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
+    """Return the states or the constant with a name, as symbols of the equations."""
+    families = {"omega": symbols.omega_b, "q": symbols.quaternion, "angles": symbols.angles}
+    states = [state for state in equations.states if name == "y" or state in families.get(name, ())]
+    if states:
+        return tuple(states)
+    formulas = (*equations.rates, *(value for _, value in equations.definitions))
+    defined = {symbol for symbol, _ in equations.definitions}
+    held = {str(symbol): symbol for formula in formulas for symbol in formula.free_symbols - defined}
+    held |= {str(state): state for state in equations.states}
+    if name in held:
+        return (held[name],)
+    groups = [group for group, members in families.items() if set(members) & set(equations.states)]
+    raise InputError(f"expected derivatives by states or constants of the equations of motion "
+                     f"({', '.join(['y', *groups, *sorted(held)])}), got {name!r}")  # fmt: skip
+
+
+def _unit_of_variable(symbol: Symbol) -> str:
+    return _unit(symbol) if symbol == PLANAR_ANGLE or symbol in symbols.UNIT else ""
 
 
 def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
@@ -114,15 +208,20 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
-def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
+def scene_description(
+    title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = (), jacobian: Sequence[str] = ()
+) -> Description:
     """Return the texts in the head comment of the file that is emitted for a scene's kernel.
 
-    In C they include ``bounds``, pairs of a heading and a text about rounding errors.
+    In C they include ``bounds``, pairs of a heading and a text about rounding errors. ``jacobian`` names the states and
+    constants by which the kernel computes derivatives.
     """
+    derivatives = f"; with their derivatives by {', '.join(jacobian)}, row by row" if jacobian else ""
+    option = f" --jacobian {','.join(jacobian)}" if jacobian else ""
     return Description(
-        title=f"equations of motion of the scene {name!r} ({title})",
+        title=f"equations of motion of the scene {name!r} ({title}){derivatives}",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
-        command=f"symrot emit {name} --target {target}",
+        command=f"symrot emit {name}{option} --target {target}",
         contract=(*bounds, *CONTRACT) if target == "c" else (),
     )

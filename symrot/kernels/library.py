@@ -6,8 +6,9 @@ from functools import cache
 from symrot.errors import InputError
 from symrot.kernels import dynamics, euler, inertia, quaternion, rodrigues, rotation_vector, torques
 from symrot.kernels.definition import Definition
+from symrot.kernels.jacobian import BY, jacobian_kernel
 
-__all__ = ["definition", "kernel_names"]
+__all__ = ["definition", "is_kernel", "kernel_names"]
 
 _GROUPS = (euler, quaternion, rotation_vector, rodrigues, dynamics, torques, inertia)
 
@@ -22,15 +23,25 @@ def kernel_names() -> tuple[str, ...]:
     return tuple(_table())
 
 
+def is_kernel(name: object) -> bool:
+    """Return whether a name is that of a kernel of the library, with or without derivatives."""
+    return isinstance(name, str) and name.split(BY, maxsplit=1)[0] in _table()
+
+
 @cache
 def definition(name: str) -> Definition:
     """Return the definition of a kernel; its formulas are derived on the first call and then cached.
+
+    A name such as ``quaternion_dcm_by_q`` is that of a kernel with its derivatives by an input.
 
     Raises
     ------
     InputError
         If there is no kernel of this name.
     """
+    base, *variables = name.split(BY)
+    if variables and base in _table():
+        return jacobian_kernel(definition(base), variables)
     if name not in _table():
         raise InputError(f"expected the name of a kernel, such as quaternion_dcm or euler_zxz_body_rates, got {name!r}")
     return _table()[name]()

@@ -17,7 +17,7 @@ from symrot.certificates.rounding.library import RoundingProblem, largest_box, l
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, scene_problem
 from symrot.errors import InputError, nearest
-from symrot.kernels.library import definition, kernel_names
+from symrot.kernels.library import definition, is_kernel, kernel_names
 from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
 from symrot.workshop.input_ranges import input_box
@@ -92,7 +92,7 @@ def require_known(kernel: str) -> None:
     The message suggests a similar name, if there is one.
     """
     path = Path(kernel)
-    if kernel in kernel_names() or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
+    if is_kernel(kernel) or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return
     hint = nearest(path.name, [*kernel_names(), *shipped_names()])
     message = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"

@@ -12,8 +12,8 @@ from symrot.certificates.laws.equality import prove_equal
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
+from symrot.kernels.library import is_kernel
 from symrot.scene.file import shipped_names
-from symrot.workshop.emit import kernel_names
 from symrot.workshop.kernel_files import stored_bounds
 from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
 
@@ -24,7 +24,7 @@ LONGEST = 200  # largest number of characters of a line or reason in a message
 
 def kernel_of(name: str) -> str | None:
     """Return the kernel of the library or the shipped scene whose C function has this name, or None."""
-    if name in kernel_names():
+    if is_kernel(name):
         return name
     return next((scene for scene in shipped_names() if scene_kernel_name(scene) == name), None)
 

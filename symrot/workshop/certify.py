@@ -14,6 +14,8 @@ from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
 from symrot.errors import CertificateError, InputError, nearest
 from symrot.files.reading import read_input
+from symrot.kernels.jacobian import BY
+from symrot.kernels.library import is_kernel
 from symrot.scene.file import names_with_kernels
 from symrot.workshop import object_code
 from symrot.workshop.certificate_diff import difference, kernel_of
@@ -50,7 +52,7 @@ def _proven_statement(data: Data) -> Data | None:
     """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
-    if name not in kernel_names():
+    if not is_kernel(name):
         if scene not in names_with_kernels() or scene_kernel_name(scene) != name:
             return None
         name = scene
@@ -212,10 +214,10 @@ def certify(
     if ranges and not bounds:
         raise InputError(f"--box: expected --box or --no-bounds, got both ({ranges[0]!r}); leave out one of them")
     printed, rounding = kernel_text(name), None
-    if bounds and (ranges or name in kernel_names()):
+    if bounds and (ranges or (is_kernel(name) and BY not in name)):  # derivatives are bounded on request
         progress("bounding ..")
         rounding = section(printed, ranges)
-    scene_bounds = None if name in kernel_names() else rounding or stored_bounds(printed, directory)
+    scene_bounds = None if is_kernel(name) else rounding or stored_bounds(printed, directory)
     progress("proving ..")
     texts = kernel_files(printed, "c", scene_bounds)
     (file, text), = certificate_files(printed, directory or Path(), scene_bounds).items()  # fmt: skip
@@ -259,7 +261,7 @@ def certify_all(
 
 def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, list[Path]]:
     if directory is not None or objects:
-        folder = directory and (directory if name in kernel_names() else directory / SCENES)
+        folder = directory and (directory if is_kernel(name) else directory / SCENES)
         return certify(name, (), folder, objects)
     key = f"certified {name} by {_programs()}"
     stored = build_cache.fetch(key)

@@ -1,6 +1,6 @@
 """The public functions that plan a scene, explain its plan, and emit the text of a kernel."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -138,7 +138,10 @@ def explain(scene: SceneSource) -> str:
     return explanation(plan(scene))
 
 
-def emit(kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
+def emit(
+    kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | None = None, jacobian: Sequence[str] = (),
+    step: str | None = None, order: int | None = None,
+) -> Emitted:  # fmt: skip
     """Return the text of a library kernel, or of a scene's own kernel; it is the same on every machine.
 
     Parameters
@@ -152,6 +155,16 @@ def emit(kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | Non
         Bounds of the rounding errors of a scene's kernel on a box of your choice, from
         :func:`symrot.workshop.bounds.section`. They are stated in the head comment of its C text and in its
         certificate. A library kernel needs none: it states the bounds on its own box.
+    jacobian : sequence of str
+        Inputs by which the derivatives of all outputs are computed too, in the order in which they are printed: names
+        of arguments (``"omega"``) or of single components (``"omega_1"``). For a scene: ``"y"``, ``"omega"``, ``"q"``,
+        a state, or a physical constant such as ``"A"``. The derivatives of ``dy`` by ``omega`` are the output
+        ``dy_by_omega``, row by row: one row for each component of ``dy``.
+    step : str, optional
+        ``"rk4"``, ``"taylor"`` or ``"dop853"``: emit one time step of a scene instead of its rates, the function
+        ``next = f(t, x, p, dt)``, with C files for double and float and a test against values of 40 digits.
+    order : int, optional
+        Order of the step ``"taylor"``, 1 to 16 (default 8).
 
     Returns
     -------
@@ -173,12 +186,22 @@ def emit(kernel: SceneSource, target: str = "c", bounds: Mapping[str, Any] | Non
     >>> import symrot
     >>> symrot.emit("euler_zxz_body_rates").name
     'euler_zxz_body_rates'
+    >>> symrot.emit("quaternion_dcm", jacobian=["q"]).name
+    'quaternion_dcm_by_q'
     """
+    if isinstance(jacobian, str):
+        raise InputError(f"jacobian: expected a list of names such as ['omega'], got {jacobian!r}")
     if target not in TARGETS:
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
     from symrot.workshop.kernel_text import kernel_text
 
-    return Emitted.of(kernel_text(kernel), target, bounds)
+    if step is not None:
+        from symrot.workshop.step_text import step_text
+
+        return Emitted.of(step_text(kernel, step, order, jacobian), target, bounds)
+    if order is not None:
+        raise InputError(f"order: expected a step as well, such as step='taylor', got only the order {order}")
+    return Emitted.of(kernel_text(kernel, jacobian), target, bounds)
 
 
 def kernel_names() -> tuple[str, ...]:

@@ -21,9 +21,19 @@ from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 from symrot.scene.file import names_with_kernels
 from symrot.workshop.kernel_text import KernelText, SceneText, kernel_text
+from symrot.workshop.step_text import step_text
 from symrot.workshop.workers import workers
 
-__all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
+__all__ = [
+    "certificate_files",
+    "chosen_text",
+    "kernel_files",
+    "kernel_lines",
+    "stale",
+    "stored_bounds",
+    "write_all",
+    "write_files",
+]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
 RECHECK = "recheck.py"  # the program that checks certificates without symrot
@@ -34,6 +44,26 @@ def kernel_lines() -> list[str]:
     """Return one line for each kernel of the library, with its name and its title."""
     width = max(map(len, kernel_names()))
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
+
+
+def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int | None) -> KernelText:
+    """Return the texts of the kernel, with or without derivatives, or of the step that the command line names.
+
+    Parameters
+    ----------
+    kernel : str
+        A kernel of the library, a shipped scene, or a scene file.
+    jacobian : str, optional
+        Names separated by commas, as for :func:`symrot.emit`.
+    step, order
+        As for :func:`symrot.emit`.
+    """
+    variables = jacobian.split(",") if jacobian is not None else ()
+    if step is not None:
+        return step_text(kernel, step, order, variables)
+    if order is not None:
+        raise InputError(f"--order: expected --step taylor as well, got only the order {order}")
+    return kernel_text(kernel, variables)
 
 
 def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:

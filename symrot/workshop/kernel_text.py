@@ -6,7 +6,7 @@ rounding bounds that it states.
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -15,6 +15,7 @@ from symrot.certificates.certificate import KernelUnderTest, certificate_text, w
 from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
 from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section
 from symrot.certificates.rounding.scenes import SceneInputs, header_lines
+from symrot.codegen.derivatives import Formulas
 from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.lowering.lower import Lowered
 from symrot.codegen.printing.banner import Description
@@ -22,17 +23,24 @@ from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, c_funct
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.math_header import math_header
 from symrot.codegen.printing.numpy_source import numpy_source
-from symrot.codegen.scene_kernels import rates_program, scene_description, with_values
+from symrot.codegen.scene_kernels import (
+    rate_derivatives,
+    rates_jacobian_program,
+    rates_program,
+    scene_description,
+    with_values,
+)
 from symrot.dynamics.equations import Equations, equations_of_motion
 from symrot.errors import InputError, nearest
-from symrot.formula.program import Program
-from symrot.kernels.library import definition, kernel_names
+from symrot.formula.program import Argument, Program
+from symrot.kernels.jacobian import jacobian_name
+from symrot.kernels.library import definition, is_kernel, kernel_names
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.scene.file import shipped_names
 from symrot.scene.scene import Scene, SceneSource, load_scene
 
-__all__ = ["SUFFIX", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+__all__ = ["SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
 
 SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js"}
 """The ending of a source file in each language that kernels are printed in."""
@@ -157,13 +165,16 @@ class SceneText(KernelText):
     ----------
     scene : Scene
         A scene whose torques are all formulas; InputError is raised for another torque, or if no state is integrated.
+    jacobian : sequence of str
+        States and constants by which the derivatives of the rates are computed too.
     """
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../../numpy/scenes", "js": "../../js/scenes"}
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, jacobian: Sequence[str] = ()) -> None:
         self.plan: Plan = make_plan(scene)
-        self.scene, self.name = self.plan.scene, scene_kernel_name(self.plan.scene.name)
+        self.scene, self.jacobian = self.plan.scene, tuple(jacobian)
+        self.name = jacobian_name(scene_kernel_name(self.plan.scene.name), self.jacobian)
         if not self.plan.states:
             raise InputError(
                 f"{self.scene.name}: expected a scene with states to integrate; all its states are constant"
@@ -174,41 +185,53 @@ class SceneText(KernelText):
         return equations_of_motion(self.plan.structure)
 
     @cached_property
-    def _lowered(self) -> Lowered:
-        return rates_program(self._equations, self.name)
+    def _formulas(self) -> tuple[Formulas, tuple[Argument, ...]]:
+        """The formulas of the rates and of their derivatives, and the output arrays for them."""
+        try:
+            return rate_derivatives(self._equations, self.jacobian)
+        except InputError as reason:
+            raise InputError(f"{self.scene.name}: {reason}") from None
 
     @cached_property
-    def _program(self) -> Program:
+    def _lowered(self) -> Lowered:
+        if not self.jacobian:
+            return rates_program(self._equations, self.name)
+        return rates_jacobian_program(self._equations, self.name, *self._formulas)
+
+    @cached_property
+    def program(self) -> Program:
+        """The program of the rates; the descriptions of its parameters are their formulas and values."""
         return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
 
     @cached_property
     def _functions(self) -> str:
-        return c_functions(self._program)
+        return c_functions(self.program)
 
     def _description(self, target: str, lines: tuple[tuple[str, str], ...] = ()) -> Description:
-        return scene_description(self.scene.title, self.scene.name, target, lines)
+        return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
         """Return the C source and its header, whose head comments state the bounds."""
         description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
-        return with_head(self._program, description, self._functions), c_header(self._program, description)
+        return with_head(self.program, description, self._functions), c_header(self.program, description)
 
     @cached_property
     def numpy(self) -> str:
         """The NumPy source."""
-        return numpy_source(self._program, self._description("numpy"))
+        return numpy_source(self.program, self._description("numpy"))
 
     @cached_property
     def js(self) -> str:
         """The JavaScript source."""
-        return js_source(self._program, self._description("js"))
+        return js_source(self.program, self._description("js"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts and equations."""
-        lowered, files = self._lowered, self._certified_files(bounds)
+        lowered, files, (formulas, _) = self._lowered, self._certified_files(bounds), self._formulas
         return scene_kernel_under_test(
-            self._equations, lowered.program, lowered.parameters, self._description("c"), files
-        )
+            self._equations, lowered.program, lowered.parameters, self._description("c"), files,
+            dict(formulas.outputs), formulas.named,
+        )  # fmt: skip
 
     @cached_property
     def inputs(self) -> SceneInputs:
@@ -219,20 +242,23 @@ class SceneText(KernelText):
         return SceneInputs(arguments, values, self.scene.span[:2], formulas, constants)
 
 
-def kernel_text(kernel: KernelText | SceneSource) -> KernelText:
-    """Return the texts of a kernel of the library, which is printed once per process, or of a scene."""
+def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) -> KernelText:
+    """Return the texts of a kernel of the library, which is printed once per process, or of a scene.
+
+    ``jacobian`` names the inputs, states or constants by which the derivatives of the outputs are computed too.
+    """
     if isinstance(kernel, KernelText):
         return kernel
     if isinstance(kernel, str):
-        if kernel in kernel_names():
-            return _library_text(kernel)
+        if is_kernel(kernel):
+            return _library_text(jacobian_name(kernel, jacobian))
         hint = nearest(kernel, [*kernel_names(), *shipped_names()])
         if kernel.isidentifier() and kernel not in shipped_names() and not Path(kernel).exists():
             after = f" ({hint})" if hint else ""
             raise InputError(
                 f"expected a kernel of `symrot emit --list`, a scene or a scene file, got {kernel[:60]!r}{after}"
             )
-    return scene_text(kernel)
+    return scene_text(kernel, jacobian)
 
 
 @cache
@@ -240,9 +266,9 @@ def _library_text(name: str) -> LibraryText:
     return LibraryText(name)
 
 
-def scene_text(scene: SceneSource) -> SceneText:
+def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
     """Return the texts of the kernel of a scene, of a shipped scene given by its name, or of a scene file."""
-    return SceneText(scene if isinstance(scene, Scene) else load_scene(scene))
+    return SceneText(scene if isinstance(scene, Scene) else load_scene(scene), jacobian)
 
 
 def scene_kernel_name(scene: str) -> str:

@@ -84,7 +84,9 @@ def functions():
 
     return FLOAT_FUNCTIONS | {
         "sinc": lambda x: sin(x) / x, "sine_gap": lambda x: (1 - sin(x) / x) / x / x,
-        "tangent_gap": lambda x: (sin(x) / x - cos(x)) / x / x, "arc_ratio": lambda s, c: atan2(s, c) / s,
+        "tangent_gap": lambda x: (sin(x) / x - cos(x)) / x / x,
+        "sine_bend": lambda x: (2 + cos(x) - 3 * (sin(x) / x)) / x / x / x / x,
+        "tangent_bend": lambda x: (3 * (sin(x) / x - cos(x)) / x - sin(x)) / x / x / x, "arc_ratio": lambda s, c: atan2(s, c) / s,
         "copysign": copysign, "select_ge": lambda a, b, x, y: x if a >= b else y,
     }  # fmt: skip
 

@@ -120,6 +120,7 @@ def test_what_kernels_call_is_within_its_stated_error():
     found = list(ulps.measured(500, ("fused",)))
     both, batch = ({"one", "batch"}, {"batch"})
     stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "tangent_gap >pi": both, "arc_ratio": both,
+              "sine_bend": both, "tangent_bend": both, "tangent_bend >pi": both,
               "sin": batch, "cos": batch, "atan2": batch}  # fmt: skip
     assert {(row.name, row.real, row.form) for row in found} == {
         (name, real, form) for name, forms in stated.items() for real in ("double", "float") for form in forms

@@ -15,6 +15,7 @@ from symrot.certificates.rounding.bounds import BUDGET, rounding_section
 from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.errors import InputError
+from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition
 
 __all__ = ["bounds_sentence", "library_region", "library_section", "region_of", "region_phrases", "rounded_up"]
@@ -41,7 +42,13 @@ def library_section(name: str, source: str) -> Section | str:
         The name of the kernel.
     source : str
         The kernel's C text, with or without the comment at its head.
+
+    Notes
+    -----
+    Derivatives are bounded on request only: they have many outputs, and the search takes minutes for some of them.
     """
+    if BY in name:
+        return f"{name}: `symrot certify {name} --box NAME=LOW:HIGH` bounds the errors of derivatives on a box"
     return _sections(name, *operations_of(name, source))
 
 

@@ -24,7 +24,7 @@ from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import Node, children, names, rename, text
 
-__all__ = ["Lowered", "lower"]
+__all__ = ["ANONYMOUS", "Lowered", "lower"]
 
 ANONYMOUS = "#"
 """First character of the name of a temporary that has no descriptive name yet."""
@@ -123,7 +123,7 @@ def lower(
         Component names and expressions, in the order of the output arguments.
     definitions : sequence of (Symbol, Expr)
         Quantities with a physical name: pairs of the symbol and its expression. Later definitions and the outputs may
-        contain the symbol.
+        contain the symbol. A name that begins with :data:`ANONYMOUS` is replaced by a descriptive one.
     parameter_argument : str
         Name of the array argument for the constants that are computed once.
 
@@ -160,7 +160,7 @@ def _lowered(
     for symbol, expr in definitions:
         alias[str(symbol)] = _substitute(gather.whole(_exact(expr)), alias)
         index = share.add(alias[str(symbol)])
-        if share.nodes[index][0] not in ("sym", "num"):
+        if share.nodes[index][0] not in ("sym", "num") and not str(symbol).startswith(ANONYMOUS):
             named[index] = str(symbol)
     signed = [gather.scaled(*gather.split(_exact(expr))) for _, expr in outputs]
     roots = [share.add(_substitute(tree, alias)) for _, tree in signed]

@@ -1,7 +1,7 @@
 """The head comment of every emitted file: title, arguments, domain, certificate, cost, derivation and release."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain, groupby, repeat
 from textwrap import wrap
@@ -65,9 +65,15 @@ def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
     heads = chain([f"{argument.role:<4} {argument.name}{size}"], repeat(""))
     groups = groupby(argument.components, key=lambda component: component[1:])
     return [
-        (head, ", ".join(name for name, *_ in components), unit, meaning)
+        (head, _listed([name for name, *_ in components]), unit, meaning)
         for head, ((unit, meaning), components) in zip(heads, groups, strict=False)
     ]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names separated by commas, or the first and the last one if all do not fit on a line."""
+    every = ", ".join(names)
+    return every if len(every) <= WIDTH else f"{names[0]} .. {names[-1]}"
 
 
 def _arguments(arguments: Iterable[Argument]) -> list[str]:

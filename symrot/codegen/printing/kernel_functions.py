@@ -6,9 +6,8 @@ See :mod:`symrot.kernels.removable`.
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from symrot.codegen.lowering.formulas import to_node
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, children
+from symrot.formula.tree import Node, children, parse
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
 __all__ = ["NEAR", "called", "own_function", "series", "turning_arguments", "without_branches"]
@@ -83,6 +82,6 @@ def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[State
 def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
     square = ("t", ("*", ("symbol", "x"), ("symbol", "x")))
     taylor = ("taylor", series(which.coefficients(precision), "t"))
-    direct = ("/", ("/", to_node(which.scaled), _X), _X)
+    direct = ("/", ("/", parse(which.scaled), _X), _X)
     choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), direct)
     return ("x",), [square, taylor], choice

@@ -8,6 +8,7 @@ from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS as KNOWN
 from symrot.formula.tree import Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
+from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["numpy_source"]
 
@@ -30,8 +31,10 @@ def _own_function(name: str) -> list[str]:
     """Return the Python definition of a function, such as sinc, that NumPy lacks; it evaluates both alternatives."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
+    high = name in REMOVABLE and REMOVABLE[name].power > 3  # its quotient overflows next to zero, where it is not used
+    ignored = 'divide="ignore", invalid="ignore"' + (', over="ignore"' if high else "")
     return [
-        "", "", '@np.errstate(divide="ignore", invalid="ignore")', f"def _{name}({', '.join(parameters)}):",
+        "", "", f"@np.errstate({ignored})", f"def _{name}({', '.join(parameters)}):",
         *(f"    {temporary} = {_expression(node)}" for temporary, node in temporaries),
         f"    return np.where({condition}, {_expression(then)}, {_expression(other)})",
     ]  # fmt: skip

@@ -1,0 +1,250 @@
+"""Formulas of outputs and of their derivatives, in several ways that need different numbers of operations.
+
+All ways are equal in exact arithmetic. Which one needs the fewest operations depends on the kernel, so the caller
+prints each and chooses:
+
+- the chain rule through the quantities with a name, and through none;
+- forward accumulation: the derivatives of each temporary by the inputs, one assignment after the other;
+- backward accumulation: the derivatives of each output by the temporaries;
+- if an output is linear in some inputs, its value as the sum of these inputs times their derivatives.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+from sympy import Abs, Add, Expr, Function, Rational, S, Symbol
+
+from symrot.codegen.lowering.lower import ANONYMOUS, Lowered, lower
+from symrot.codegen.lowering.tape import tape_of
+from symrot.formula.program import Program, Signature
+from symrot.formula.tree import FUNCTIONS, Node, evaluate
+from symrot.kernels.derivative import exact_derivative
+from symrot.kernels.jacobian import BY
+from symrot.kernels.removable import DERIVATIVES
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
+
+__all__ = ["Formulas", "cheapest", "ways"]
+
+_ARITHMETIC = ("+", "-", "*", "/", "neg")
+_OWN = {name: Function(name, real=True) for name in OWN_FUNCTIONS}
+_FUNCTIONS = {name: Abs if name == "abs" else getattr(sympy, name) for name in FUNCTIONS} | _OWN
+
+Entries = Sequence[tuple[str, str]]  # names of an output and of the input by which its derivative is taken
+Groups = Sequence[Sequence[str]]  # inputs that belong together, such as the components of a vector
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """Formulas of outputs, and the quantities with a name that they use, in the order of computation."""
+
+    outputs: tuple[tuple[str, Expr], ...]
+    named: tuple[tuple[Symbol, Expr], ...] = ()
+
+    @classmethod
+    def of(cls, program: Program) -> "Formulas":
+        """Return the formulas of a program; its temporaries are the quantities with a name."""
+        inputs = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
+        symbols = {name: Symbol(name, real=True) for name in [*inputs, *(name for name, _ in program.temporaries)]}
+
+        def formula(node: Node) -> Expr:
+            return evaluate(node, symbols, _FUNCTIONS, _rational)
+
+        return cls(
+            tuple((name, formula(node)) for name, node in program.outputs),
+            tuple((symbols[name], formula(node)) for name, node in program.temporaries),
+        )
+
+    @property
+    def explicit(self) -> "Formulas":
+        """The same outputs without quantities with a name."""
+        outputs = []
+        for name, formula in self.outputs:
+            for symbol, value in reversed(self.named):
+                formula = formula.xreplace({symbol: value})
+            outputs.append((name, formula))
+        return Formulas(tuple(outputs))
+
+
+def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, groups: Groups) -> Iterator[Formulas]:
+    """Yield the formulas of outputs and derivatives, once for each way to compute them.
+
+    Parameters
+    ----------
+    value : Formulas
+        The outputs.
+    chained : Formulas
+        The outputs and their derivatives by the chain rule.
+    base : Program
+        A program for the outputs.
+    entries : sequence of (output, input)
+        The derivatives, in the order in which they are printed.
+    groups : sequence of sequences of str
+        The inputs, in groups in which the outputs may be linear.
+
+    Notes
+    -----
+    Functions such as sinc stay finite at zero only by the chain rule, which cancels the division by their argument.
+    """
+    explicit = _explicit(value.explicit, entries)
+    every = [chained]
+    if not set(base.operations()) & set(DERIVATIVES):
+        every.append(explicit)
+        for formulas in (Formulas.of(base), Formulas.of(_single_operations(base))):
+            every += [_forward(formulas, entries), _backward(formulas, entries)]
+    linear = _linear_outputs(explicit, entries, groups)
+    yield from every
+    for formulas in every if linear else ():
+        yield _with_sums(formulas, linear)
+
+
+def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
+    """Return the program with the fewest operations among equal formulas; changes of sign only decide between equals.
+
+    Parameters
+    ----------
+    signature, parameter_argument
+        As for :func:`symrot.codegen.lowering.lower.lower`.
+    formulas : iterable of Formulas
+        The results of :func:`ways`.
+    """
+
+    def cost(lowered: Lowered) -> tuple[int, int]:
+        counts = lowered.program.operations()
+        return counts.total() - counts["neg"], counts["neg"]
+
+    every = (lower(signature, each.outputs, each.named, parameter_argument) for each in formulas)
+    return min(every, key=cost)
+
+
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
+
+
+def _entry(output: str, variable: str) -> str:
+    return f"{output}{BY}{variable}"
+
+
+def _explicit(value: Formulas, entries: Entries) -> Formulas:
+    """Return outputs and derivatives, each as one formula in the inputs."""
+    formulas = dict(value.outputs)
+    slopes = []
+    for output, variable in entries:
+        symbol = _symbols(formulas[output]).get(variable)
+        slope = S.Zero if symbol is None else exact_derivative(formulas[output], symbol)
+        slopes.append((_entry(output, variable), slope))
+    return Formulas((*value.outputs, *slopes))
+
+
+def _symbols(formula: Expr) -> Mapping[str, Symbol]:
+    return {str(symbol): symbol for symbol in formula.free_symbols}
+
+
+def _single_operations(program: Program) -> Program:
+    """Return the program with one operation in each assignment."""
+    names = [name for name, _ in program.outputs]
+    tape = tape_of(program, names)
+    nodes: list[Node] = []
+    temporaries: list[tuple[str, Node]] = []
+    for kind, operands, value in tape.operations:
+        if kind in ("number", "symbol"):
+            nodes.append((kind, value))
+            continue
+        parts = tuple(nodes[i] for i in operands)
+        name = f"{ANONYMOUS}step_{len(temporaries)}"
+        temporaries.append((name, (kind, *parts) if kind in _ARITHMETIC else ("call", kind, parts)))
+        nodes.append(("symbol", name))
+    outputs = tuple(zip(names, (nodes[i] for i in tape.outputs), strict=True))
+    return Program(program.signature, tuple(temporaries), outputs)
+
+
+def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
+    """Return the derivative of a formula by each of its symbols; ``value`` is the formula's own symbol, if it has one.
+
+    With it, the derivative of a quotient ``y = a/b`` is ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is
+    ``a'/(2 y)``.
+    """
+    held = sorted(formula.free_symbols, key=str)
+    above, below = formula.as_numer_denom()
+    if value is not None and formula.is_Pow and formula.exp == Rational(1, 2):
+        return {s: exact_derivative(formula.base, s) / (2 * value) for s in held}
+    if value is not None and below.free_symbols:
+        return {s: (exact_derivative(above, s) - value * exact_derivative(below, s)) / below for s in held}
+    return {s: exact_derivative(formula, s) for s in held}
+
+
+def _forward(value: Formulas, entries: Entries) -> Formulas:
+    inputs = {variable for _, variable in entries}
+    named: list[tuple[Symbol, Expr]] = []
+    slopes: dict[Symbol, dict[str, Expr]] = {}
+
+    def total(formula: Expr, symbol: Symbol | None) -> dict[str, Expr]:
+        result: dict[str, Expr] = {}
+        for inner, slope in _slopes(formula, symbol).items():
+            by = slopes.get(inner, {str(inner): S.One} if str(inner) in inputs else {})
+            for name, inner_slope in by.items():
+                result[name] = result.get(name, S.Zero) + slope * inner_slope
+        return result
+
+    for symbol, formula in value.named:
+        named.append((symbol, formula))
+        rates = {name: slope for name, slope in total(formula, symbol).items() if slope != 0}
+        slopes[symbol] = {name: _symbol(named, _entry(str(symbol), name), slope) for name, slope in rates.items()}
+    rows = {name: total(formula, None) for name, formula in value.outputs}
+    derivatives = ((_entry(output, variable), rows[output].get(variable, S.Zero)) for output, variable in entries)
+    return Formulas((*value.outputs, *derivatives), tuple(named))
+
+
+def _backward(value: Formulas, entries: Entries) -> Formulas:
+    named = list(value.named)
+    slopes = {symbol: _slopes(formula, symbol) for symbol, formula in value.named}
+    outputs, rows = dict(value.outputs), dict[str, dict[str, Expr]]()
+    for output in dict.fromkeys(output for output, _ in entries):
+        row = _slopes(outputs[output])
+        for symbol in reversed(slopes):
+            if (adjoint := row.pop(symbol, S.Zero)) == 0:
+                continue
+            adjoint = _symbol(named, _entry(output, str(symbol)), adjoint)
+            for inner, slope in slopes[symbol].items():
+                row[inner] = row.get(inner, S.Zero) + adjoint * slope
+        rows[output] = {str(symbol): entry for symbol, entry in row.items()}
+    derivatives = ((_entry(output, variable), rows[output].get(variable, S.Zero)) for output, variable in entries)
+    return Formulas((*value.outputs, *derivatives), tuple(named))
+
+
+def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
+    """Return a new symbol for a derivative, which is added to ``named``; a number times a symbol needs none."""
+    if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
+        return slope
+    symbol = Symbol(f"{ANONYMOUS}{name.replace(ANONYMOUS, '')}", real=True)
+    named.append((symbol, slope))
+    return symbol
+
+
+Linear = dict[str, tuple[tuple[str, Symbol], ...]]  # output -> names of derivatives, each with the input of its term
+
+
+def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Linear:
+    """Return the outputs that are linear in a group of inputs: the sum of the inputs times their derivatives."""
+    formulas, known, linear = dict(explicit.outputs), set(entries), Linear()
+    for output in dict.fromkeys(output for output, _ in entries):
+        symbols = _symbols(formulas[output])
+        for group in groups:
+            inputs = [symbols[name] for name in group if name in symbols]
+            if not inputs or any((output, str(symbol)) not in known for symbol in inputs):
+                continue
+            slopes = [formulas[_entry(output, str(symbol))] for symbol in inputs]
+            at_zero = formulas[output].xreplace(dict.fromkeys(inputs, S.Zero))
+            if at_zero == 0 and not any(slope.free_symbols & set(inputs) for slope in slopes):
+                linear[output] = tuple((_entry(output, str(symbol)), symbol) for symbol in inputs)
+                break
+    return linear
+
+
+def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
+    """Return formulas in which the linear outputs are sums of inputs times derivatives."""
+    outputs, named = dict(formulas.outputs), list(formulas.named)
+    for output, terms in linear.items():
+        outputs[output] = Add(*(symbol * _symbol(named, f"term_{entry}", outputs[entry]) for entry, symbol in terms))
+    return Formulas(tuple(outputs.items()), tuple(named))

@@ -1,0 +1,236 @@
+"""One time step of fixed size as a straight-line program: Runge-Kutta methods and Taylor series.
+
+A step takes t, the state x, the parameters p and dt, and returns the state at t + dt. It has no loop, no heap and no
+branch of its own, so its time is bounded. Each method is written once, for any kind of number; here it is evaluated
+with numbers that record their operations, and the record is the program.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from symrot.codegen.lowering.lower import ANONYMOUS
+from symrot.codegen.lowering.tape import Operation
+from symrot.codegen.lowering.temporary_names import with_names
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import FUNCTIONS, Node
+
+__all__ = ["RK4", "Method", "RungeKutta", "TaylorSeries", "step_program", "stepped"]
+
+STATE, SIZE, NEXT = "x", "dt", "next"
+
+
+@dataclass(frozen=True)
+class RungeKutta:
+    """An explicit Runge-Kutta method: stage i adds ``weights[i][j] dt`` times the rates of each earlier stage j."""
+
+    name: str
+    order: int
+    nodes: tuple[Fraction, ...]
+    stages: tuple[Mapping[int, Fraction], ...]
+    weights: Mapping[int, Fraction]
+
+    @property
+    def formula(self) -> str:
+        """The method in words, for the head comment of its text."""
+        return f"explicit Runge-Kutta method {self.name} of order {self.order} with {len(self.nodes)} stages"
+
+
+@dataclass(frozen=True)
+class TaylorSeries:
+    """The Taylor series of the motion up to the power ``order`` of dt."""
+
+    order: int
+    name: str = "taylor"
+
+    @property
+    def formula(self) -> str:
+        """The method in words, for the head comment of its text."""
+        return f"Taylor series of the motion up to dt^{self.order}"
+
+
+Method = RungeKutta | TaylorSeries
+_HALF = Fraction(1, 2)
+RK4 = RungeKutta(
+    "rk4", 4, (Fraction(0), _HALF, _HALF, Fraction(1)), ({}, {0: _HALF}, {1: _HALF}, {2: Fraction(1)}),
+    {0: Fraction(1, 6), 1: Fraction(1, 3), 2: Fraction(1, 3), 3: Fraction(1, 6)},
+)  # fmt: skip
+"""W. Kutta's method of order 4. Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., table II.1.2."""
+
+
+def stepped(
+    rates: Program, method: Method, values: Mapping[str, Any], dt: Any,
+    functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
+) -> list[Any]:  # fmt: skip
+    """Return the state after one step, computed with any kind of number.
+
+    Parameters
+    ----------
+    rates : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    method : Method
+        The method of the step.
+    values : mapping
+        Values of t, of the states and of the parameters, by name.
+    dt : number
+        Size of the step, s; may be negative.
+    functions, number
+        As for :meth:`symrot.formula.program.Program.evaluate`.
+    """
+    states = [name for name, *_ in rates.signature.argument("y").components]
+    if isinstance(method, TaylorSeries):
+        series = coefficients(recurrences(rates), method.order, values, functions, number)
+        return [_polynomial(each, dt) for each in series]
+
+    def moved(weights: Mapping[int, Fraction]) -> list[Any]:
+        result = []
+        for i, name in enumerate(states):
+            terms = [number(weight) * dt * slopes[stage][i] for stage, weight in weights.items()]
+            result.append(sum(terms, start=values[name]))
+        return result
+
+    slopes: list[list[Any]] = []
+    for node, weights in zip(method.nodes, method.stages, strict=True):
+        point = dict(values) | dict(zip(states, moved(weights), strict=True)) | {"t": values["t"] + number(node) * dt}
+        slopes.append(list(rates.evaluate(point, functions, number).values()))
+    return moved(method.weights)
+
+
+def _polynomial(series: Sequence[Any], dt: Any) -> Any:
+    """Return the value of a polynomial by Horner's rule; ``series`` begins with the constant."""
+    value = series[-1]
+    for coefficient in reversed(series[:-1]):
+        value = coefficient + dt * value
+    return value
+
+
+def step_program(rates: Program, method: Method, name: str) -> Program:
+    """Return the program of one step, with the arguments t, x, p (if the rates have parameters), dt, next.
+
+    Parameters
+    ----------
+    rates : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    method : Method
+        The method of the step.
+    name : str
+        Name of the program.
+
+    Raises
+    ------
+    InputError
+        If the method is a Taylor series and the rates contain an operation without one.
+    """
+    time, state = rates.signature.argument("t"), rates.signature.argument("y")
+    size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
+    results = tuple((f"{NEXT}_{each}", unit, f"{meaning} at t + dt") for each, unit, meaning in state.components)
+    parameters = tuple(a for a in rates.signature.arguments if a.name == "p" and a.size)
+    arguments = (time, replace(state, name=STATE), *parameters, size, Argument(NEXT, "out", results))
+    recorder = _Recorder()
+    inputs = {each: recorder.symbol(each) for a in arguments if a.role == "in" for each, *_ in a.components}
+    functions = {each: recorder.function(each) for each in FUNCTIONS}
+    outputs = stepped(rates, method, inputs, inputs[SIZE], functions, recorder.constant)
+    return recorder.program(Signature(name, arguments), dict(zip((each for each, *_ in results), outputs, strict=True)))
+
+
+class _Recorder:
+    """A record of operations, in which equal operations occur once and operations with constants are folded."""
+
+    def __init__(self) -> None:
+        self.known: dict[Operation, int] = {}
+
+    def add(self, kind: str, *operands: int, value: Any = None) -> "_Recorded":
+        return _Recorded(self, self.known.setdefault(Operation(kind, operands, value), len(self.known)))
+
+    def symbol(self, name: str) -> "_Recorded":
+        return self.add("symbol", value=name)
+
+    def constant(self, value: Fraction) -> Fraction:
+        return value
+
+    def index(self, value: Any) -> int:
+        return value.index if isinstance(value, _Recorded) else self.add("number", value=Fraction(value)).index
+
+    def function(self, name: str) -> Callable[..., "_Recorded"]:
+        return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
+
+    def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
+        """Return the program of the recorded operations that the outputs need; a result used once is not named."""
+        roots = {name: self.index(value) for name, value in outputs.items()}
+        operations = list(self.known)
+        uses = Counter(roots.values())
+        needed = set(roots.values())
+        for index in range(len(operations) - 1, -1, -1):
+            if index in needed:
+                uses.update(operations[index].operands)
+                needed.update(operations[index].operands)
+        nodes: dict[int, Node] = {}
+        temporaries: list[tuple[str, Node]] = []
+        for index in sorted(needed):
+            kind, operands, value = operations[index]
+            if kind in ("number", "symbol"):
+                nodes[index] = (kind, value)
+                continue
+            parts = tuple(nodes[i] for i in operands)
+            node: Node = ("call", kind.removeprefix("call "), parts) if kind.startswith("call ") else (kind, *parts)
+            if uses[index] > 1 or node[0] == "call":
+                temporaries.append((f"{ANONYMOUS}{index}", node))
+                node = ("symbol", f"{ANONYMOUS}{index}")
+            nodes[index] = node
+        program = Program(signature, tuple(temporaries), tuple((name, nodes[i]) for name, i in roots.items()))
+        return with_names(program, [name for name, _ in temporaries], {})
+
+
+class _Recorded:
+    """A number that records the operations in which it occurs."""
+
+    def __init__(self, recorder: _Recorder, index: int) -> None:
+        self.recorder, self.index = recorder, index
+
+    def _operation(self, kind: str, left: Any, right: Any) -> "_Recorded":
+        return self.recorder.add(kind, self.recorder.index(left), self.recorder.index(right))
+
+    def __add__(self, other: Any) -> "_Recorded":
+        return self if _is(other, 0) else self._operation("+", self, other)
+
+    def __radd__(self, other: Any) -> "_Recorded":
+        return self if _is(other, 0) else self._operation("+", other, self)
+
+    def __sub__(self, other: Any) -> "_Recorded":
+        return self if _is(other, 0) else self._operation("-", self, other)
+
+    def __rsub__(self, other: Any) -> "_Recorded":
+        return -self if _is(other, 0) else self._operation("-", other, self)
+
+    def __mul__(self, other: Any) -> Any:
+        if isinstance(other, _Recorded):
+            return self._operation("*", self, other)
+        return 0 if other == 0 else self if other == 1 else -self if other == -1 else self._operation("*", other, self)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._operation("/", self, other) if isinstance(other, _Recorded) else self * (1 / Fraction(other))
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return 0 if _is(other, 0) else self._operation("/", other, self)
+
+    def __neg__(self) -> "_Recorded":
+        return self.recorder.add("neg", self.index)
+
+    def __pow__(self, exponent: int) -> Any:
+        if exponent < 0:
+            return 1 / self**-exponent
+        result: Any = self
+        for bit in format(exponent, "b")[1:]:
+            result = result * result
+            result = result * self if bit == "1" else result
+        return result
+
+
+def _is(value: Any, number: int) -> bool:
+    return not isinstance(value, _Recorded) and bool(value == number)

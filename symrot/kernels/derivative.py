@@ -1,0 +1,154 @@
+"""Exact derivatives of the formulas of kernels, written with the quantities that the values have computed already.
+
+Three rules keep the derivatives short and finite where the values are finite:
+
+- a quantity with a name, such as ``angle = sqrt(v . v)``, keeps its name: the chain rule multiplies by its derivative;
+- the derivative of a quotient ``y = a/b`` is ``(a' - y b')/b``, and of a root ``r = sqrt(a)`` it is ``a'/(2 r)``;
+- the sine in the derivative of ``cos(angle/2)`` is written ``angle/2 * sinc(angle/2)``, so that a division by a root
+  that may be zero cancels.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from sympy import Expr, Integer, Mul, Rational, S, Symbol, cos, sign, sin
+from sympy.core.function import AppliedUndef
+
+from symrot.errors import InputError
+from symrot.kernels.removable import DERIVATIVES, copysign, select_ge, sinc
+
+__all__ = ["Derivatives", "exact_derivative"]
+
+Named = tuple[tuple[Symbol, Expr], ...]
+Slope = Callable[..., tuple[Expr, ...]]  # arguments of a function -> its derivative by each argument
+
+_SLOPES: Mapping[str, Slope] = {
+    **{name: lambda x, slope=slope: (slope(x),) for name, slope in DERIVATIVES.items()},
+    "copysign": lambda x, y: (copysign(1, x) * copysign(1, y) if x.free_symbols else S.Zero, S.Zero),
+}
+
+
+def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
+    """Return the derivative of an expression by a symbol; other symbols are constants.
+
+    A choice between two formulas has the derivative of the chosen formula.
+
+    Raises
+    ------
+    InputError
+        If the derivative of a function in the expression is no formula of kernels.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> x = Symbol("x", real=True)
+    >>> exact_derivative(sinc(x), x)
+    -x*tangent_gap(x)
+    """
+    if variable not in expr.free_symbols:
+        return S.Zero
+    calls = sorted((call for call in expr.atoms(AppliedUndef) if _is_outermost(call, expr)), key=str)
+    stand_in = {call: Symbol(f"call_{k}", real=True) for k, call in enumerate(calls)}
+    plain = expr.xreplace(stand_in)
+    back = {symbol: call for call, symbol in stand_in.items()}
+    total = _plain(plain, variable, back)
+    for call, symbol in stand_in.items():
+        if variable in call.free_symbols:
+            total += _plain(plain, symbol, back) * _slope(call, variable)
+    return total
+
+
+def _plain(expr: Expr, variable: Symbol, back: Mapping[Expr, Expr]) -> Expr:
+    """Return the derivative of an expression without functions of symrot, in which symbols stand for their calls."""
+    slope = expr.diff(variable).replace(sign, lambda value: copysign(Integer(1), value))
+    return slope.xreplace(dict(back))
+
+
+def _is_outermost(call: Expr, expr: Expr) -> bool:
+    """Return whether an expression contains a call outside all other calls of functions of symrot."""
+    if expr == call:
+        return True
+    if isinstance(expr, AppliedUndef):
+        return False
+    return any(_is_outermost(call, argument) for argument in expr.args)
+
+
+def _slope(call: Expr, variable: Symbol) -> Expr:
+    """Return the derivative of a call of one of symrot's own functions."""
+    name = call.func.__name__
+    if name == "select_ge":
+        left, right, *choices = call.args
+        one, other = (exact_derivative(choice, variable) for choice in choices)
+        return one if one == other else select_ge(left, right, one, other)
+    if name not in _SLOPES:
+        raise InputError(
+            f"expected a kernel whose functions have derivatives that kernels can compute, got the function {name}"
+        )
+    slopes = _SLOPES[name](*call.args)
+    return sum((slope * exact_derivative(argument, variable)
+                for slope, argument in zip(slopes, call.args, strict=True) if slope != 0), S.Zero)  # fmt: skip
+
+
+class Derivatives:
+    """The derivatives of formulas by inputs, through the quantities that the formulas use by a name.
+
+    Parameters
+    ----------
+    named : sequence of (Symbol, Expr)
+        Quantities with a name; later formulas may contain the symbols of earlier ones.
+    short : bool
+        Whether the derivative of each quantity gets a name too, such as ``turning_by_theta``.
+    """
+
+    def __init__(self, named: Sequence[tuple[Symbol, Expr]], short: bool = True) -> None:
+        self.values, self.short = dict(named), short
+        self.roots = {symbol for symbol, value in named if value.is_Pow and value.exp == Rational(1, 2)}
+        self.named: dict[Symbol, Expr] = {}
+        self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
+
+    def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
+        """Return the derivative of a formula by an input; ``value`` is a name of the formula, if it has one."""
+        root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
+        if value is not None and root_of is not None:
+            return self.of(root_of, variable) / (2 * value)
+        above, below = expr.as_numer_denom()
+        if value is not None and self._depends(below, variable):
+            return (self.of(above, variable) - value * self.of(below, variable)) / below
+        total = exact_derivative(expr, variable)
+        for symbol in sorted(expr.free_symbols & set(self.values), key=str):
+            if (slope := self._of_named(symbol, variable)) != 0:
+                total += self._by_named(expr, symbol, slope)
+        return total
+
+    def _depends(self, expr: Expr, variable: Symbol) -> bool:
+        held = expr.free_symbols
+        return variable in held or any(self._of_named(symbol, variable) != 0 for symbol in held & set(self.values))
+
+    def _of_named(self, symbol: Symbol, variable: Symbol) -> Expr:
+        key = (symbol, variable)
+        if key not in self.slopes:
+            slope = self.of(self.values[symbol], variable, symbol)
+            if self.short and slope.args and symbol not in self.roots and not _is_product(slope):
+                name = Symbol(f"{symbol}_by_{variable}", real=True)
+                self.named[name], slope = slope, name
+            self.slopes[key] = slope
+        return self.slopes[key]
+
+    def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
+        """Return the part of a derivative that comes from one quantity with a name."""
+        partial = exact_derivative(expr, symbol)
+        if symbol in self.roots:
+            partial = _with_sinc(expr, symbol, partial)
+        return Mul(partial, slope) if not partial.is_Add else sum((term * slope for term in partial.args), S.Zero)
+
+
+def _is_product(expr: Expr) -> bool:
+    """Return whether an expression is a number times a symbol, which needs no name."""
+    return bool(expr.as_coeff_Mul()[1].is_Symbol)
+
+
+def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
+    """Return a derivative by a root in which the sines of its multiples are written as ``x*sinc(x)``."""
+    angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
+    for angle in angles:
+        partial = partial.xreplace({sin(angle): angle * sinc(angle)})
+    return partial

@@ -1,0 +1,143 @@
+"""Kernels with derivatives: a kernel of the library whose outputs are followed by their derivatives by some inputs.
+
+Such a kernel has a name of its own, ``euler_zxz_body_rates_by_angles_by_omega``, and is a kernel like any other:
+printed, certified, bounded and audited by its name.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+from sympy import Add, Expr, Rational, Symbol
+
+from symrot.errors import InputError
+from symrot.formula.program import Argument
+from symrot.kernels.definition import Definition, Law
+from symrot.kernels.derivative import Derivatives, exact_derivative
+from symrot.kernels.removable import explicit
+
+__all__ = ["BY", "jacobian_argument", "jacobian_kernel", "jacobian_name", "unit_of_quotient"]
+
+BY = "_by_"
+"""What stands in the name of a kernel with derivatives before each input."""
+
+
+def jacobian_name(kernel: str, variables: Sequence[str]) -> str:
+    """Return the name of a kernel with derivatives by inputs, such as ``quaternion_dcm_by_q``."""
+    return BY.join((kernel, *variables))
+
+
+def unit_of_quotient(above: str, below: str) -> str:
+    """Return the unit of a quotient of two quantities as text, such as ``(rad/s)/(kg m^2)``."""
+    if not below:
+        return ""  # a constant of a scene, whose unit the scene does not say
+    if below == "1" or above == below:
+        return above if below == "1" else "1"
+    if above.startswith(f"{below}/"):
+        return f"1{above.removeprefix(below)}"
+    bracketed = [f"({unit})" if set(unit) & set("/ ") else unit for unit in (above, below)]
+    return "/".join(bracketed)
+
+
+def jacobian_argument(target: Argument, name: str, variables: Sequence[tuple[str, str, str]]) -> Argument:
+    """Return the output array of the derivatives of an output by the components of an input, row by row."""
+    components = tuple(
+        (f"{output}{BY}{variable}", unit_of_quotient(unit, by), f"derivative of {target.name} by {name}")
+        for (output, unit, _), (variable, by, _) in product(target.components, variables)
+    )
+    return Argument(f"{target.name}{BY}{name}", "out", components)
+
+
+def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
+    """Return a kernel that computes the outputs of a kernel and their derivatives by some of its inputs.
+
+    Parameters
+    ----------
+    kernel : Definition
+        The kernel without derivatives.
+    variables : sequence of str
+        Names of inputs: arguments such as ``"omega"``, or single components such as ``"omega_1"``.
+
+    Returns
+    -------
+    Definition
+        The outputs of the kernel, then for each output and each input an array of derivatives, row by row.
+
+    Raises
+    ------
+    InputError
+        If the kernel has no such input, an input is named twice, or a derivative is no formula of kernels.
+    """
+    chosen = {name: _components(kernel, name) for name in _distinct(kernel, variables)}
+    symbols, slopes = _symbols(kernel), Derivatives(kernel.named)
+    results = list(kernel.results)
+    for target, formulas in kernel.results:
+        for name, components in chosen.items():
+            inputs = [symbols[component] for component, *_ in components]
+            entries = tuple(slopes.of(formula, variable) for formula, variable in product(formulas, inputs))
+            results.append((jacobian_argument(target, name, components), entries))
+    listed = ", ".join(chosen)
+    return replace(
+        kernel, name=jacobian_name(kernel.name, variables), results=tuple(results),
+        domain=f"{kernel.domain}; derivatives: where no divisor is zero and no choice changes",
+        title=f"{kernel.title}; with its derivatives by {listed}, row by row",
+        named=(*kernel.named, *slopes.named.items()), laws=lambda: _laws(kernel, chosen),
+    )  # fmt: skip
+
+
+def _symbols(kernel: Definition) -> dict[str, Symbol]:
+    """Return the symbol of each input of a kernel, with the assumptions that its formulas make, such as positive."""
+    formulas = [formula for _, formula in (*kernel.formulas, *kernel.named)]
+    held = {str(symbol): symbol for formula in formulas for symbol in formula.free_symbols}
+    return {name: held.get(name, Symbol(name, real=True)) for a in kernel.inputs for name, *_ in a.components}
+
+
+def _distinct(kernel: Definition, variables: Sequence[str]) -> Sequence[str]:
+    seen: set[str] = set()
+    for name in variables:
+        components = {component for component, *_ in _components(kernel, name)}
+        if components & seen:
+            raise InputError(f"{kernel.name}: expected each input once, got {name!r} twice")
+        seen |= components
+    return variables
+
+
+def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ...]:
+    """Return the components of an input argument, or the component itself."""
+    for argument in kernel.inputs:
+        if argument.name == name:
+            return argument.components
+        for component in argument.components:
+            if component[0] == name:
+                return (component,)
+    known = ", ".join(dict.fromkeys(n for a in kernel.inputs for n in (a.name, *(c[0] for c in a.components))))
+    raise InputError(f"{kernel.name}: expected derivatives by its inputs ({known}), got {name!r}")
+
+
+def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
+    """Return the laws of the kernel, and the law that each derivative is the exact derivative of its output.
+
+    For an output ``y = a/b`` the law is ``b y' = a' - y b'``, which is shorter than the derivative of the quotient.
+    """
+    symbols, laws = _symbols(kernel), list(kernel.laws())
+    roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
+    for name, components in chosen.items():
+        vanishing = []
+        for (output, formula), (variable, *_) in product(kernel.formulas, components):
+            for symbol, value in reversed(kernel.named):
+                formula = formula if symbol in roots else formula.xreplace({symbol: value})
+            above, below = explicit(formula).as_numer_denom()
+            own, entry = (Symbol(each, real=True) for each in (output, f"{output}{BY}{variable}"))
+            slopes = [_slope(part, symbols[variable], roots) for part in (above, below)]
+            vanishing.append(below * entry - slopes[0] + own * slopes[1])
+        laws.append(Law(f"the derivatives by {name} are those of the outputs", tuple(vanishing)))
+    return tuple(laws)
+
+
+def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
+    """Return the derivative of a formula by an input, through the roots that the formula uses by a symbol."""
+    through = [
+        exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)
+        for root, value in roots.items()
+    ]
+    return Add(exact_derivative(formula, variable), *through)

@@ -1,0 +1,237 @@
+"""The texts of one time step of a scene: C with test vectors, NumPy, JavaScript and the certificate of its formula."""
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar
+
+from symrot.certificates.certificate import KernelUnderTest
+from symrot.certificates.step_certificate import StepUnderTest, step_certificate
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c_header, c_name, with_head
+from symrot.codegen.printing.js_source import js_source
+from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_program, stepped
+from symrot.errors import CertificateError, InputError
+from symrot.formula.program import Program
+from symrot.formula.tree import FUNCTIONS
+from symrot.kernels.library import is_kernel
+from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
+
+__all__ = ["ORDER", "STEPS", "StepText", "step_method", "step_text"]
+
+ORDER, LARGEST_ORDER = 8, 16
+SIZES = (Fraction(1, 1024), Fraction(1, 64), Fraction(-1, 256))  # sizes of the test vectors, s, for rates near 1/s
+DIGITS = 40
+
+
+def _dop853(order: int) -> Method:
+    """Return the method of order 8 of Dormand and Prince's pair, without its estimates of the error."""
+    stages = range(1, 13)
+    return RungeKutta(
+        "dop853", 8, tuple(Fraction(NODES[i]) for i in stages),
+        tuple({j - 1: Fraction(a) for j, a in STAGE_WEIGHTS.get(i, {}).items()} for i in stages),
+        {j - 1: Fraction(b) for j, b in WEIGHTS.items()},
+    )  # fmt: skip
+
+
+STEPS: Mapping[str, Callable[[int], Method]] = {"rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853}
+"""The methods of emitted steps, by name; each is made from the order of the Taylor series."""
+
+
+def step_method(name: str, order: int | None = None) -> Method:
+    """Return the method of a step.
+
+    Parameters
+    ----------
+    name : str
+        ``"rk4"``, ``"taylor"`` or ``"dop853"``.
+    order : int, optional
+        Order of the Taylor series, 1 to 16; default 8.
+
+    Raises
+    ------
+    InputError
+        For an unknown method, or an order that the method does not have.
+    """
+    if name not in STEPS:
+        raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
+    if order is not None and name != "taylor":
+        raise InputError(f"order: expected an order with the step taylor only, got {order} with {name}")
+    if order is not None and not 1 <= order <= LARGEST_ORDER:
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
+    return STEPS[name](ORDER if order is None else order)
+
+
+def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> "StepText":
+    """Return the texts of a step of a scene; raise InputError for a library kernel or for derivatives of a step."""
+    if isinstance(scene, str) and is_kernel(scene):
+        raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
+    if jacobian:
+        raise InputError(f"jacobian: expected no derivatives of a step, got {', '.join(jacobian)} with the step {step}")
+    method = step_method(step, order)
+    return StepText(scene if isinstance(scene, Scene) else load_scene(scene), method)
+
+
+class StepText(KernelText):
+    """The texts of one step of a scene's motion with a fixed method.
+
+    Parameters
+    ----------
+    scene : Scene
+        As for :class:`SceneText`.
+    method : Method
+        The method, see :func:`step_method`.
+    """
+
+    folders: ClassVar[Mapping[str, str]] = {}
+
+    def __init__(self, scene: Scene, method: Method) -> None:
+        self.rates, self.method = SceneText(scene), method
+        self.name = f"{self.rates.name.removesuffix('_rates')}_{method.name}_step"
+
+    @cached_property
+    def _rates_program(self) -> Program:
+        return self.rates.program
+
+    @cached_property
+    def _program(self) -> Program:
+        try:
+            return step_program(self._rates_program, self.method, self.name)
+        except InputError as reason:
+            raise InputError(f"{self.rates.scene.name}: {reason}") from None
+
+    def _description(self, target: str) -> Description:
+        scene, order = self.rates.scene, ""
+        if isinstance(self.method, TaylorSeries) and self.method.order != ORDER:
+            order = f" --order {self.method.order}"
+        contract = (
+            ("Method", self.method.formula),
+            ("Test", "{kernel}_test.c compares the functions with values of 40 digits"),
+            ("Certificate", "{kernel}.cert.json: the text computes the formula of the method"),
+            ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
+        )
+        return Description(
+            title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt",
+            domain="all states of finite size; the norm of a quaternion drifts with the error of the method",
+            derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
+            command=f"symrot emit {scene.name} --step {self.method.name}{order} --target {target}",
+            contract=contract if target == "c" else contract[:1],
+        )  # fmt: skip
+
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
+        if bounds:
+            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
+        return self._c
+
+    @cached_property
+    def _c(self) -> tuple[str, str]:
+        reals, description = (DOUBLE, FLOAT), self._description("c")
+        return (
+            with_head(self._program, description, c_functions(self._program, reals)),
+            c_header(self._program, description, reals),
+        )
+
+    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
+        """Return the C files as a map from name to text: header, source, test."""
+        return super().c_files(bounds) | {f"{self.name}_test.c": self._test}
+
+    @cached_property
+    def numpy(self) -> str:
+        """The NumPy source."""
+        return numpy_source(self._program, self._description("numpy"))
+
+    @cached_property
+    def js(self) -> str:
+        """The JavaScript source."""
+        return js_source(self._program, self._description("js"))
+
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Raise CertificateError: a step has a certificate of its own kind."""
+        raise CertificateError(f"{self.name}: expected a kernel, got a step, whose certificate states its formula only")
+
+    @cached_property
+    def certified(self) -> StepUnderTest:
+        """The step with its texts, as the object from which its certificate is made."""
+        description = self._description("c")
+        return StepUnderTest(
+            self.name, description.title, description.command, self._rates_program, self.method, self._program,
+            self.c_files(),
+        )  # fmt: skip
+
+    def certificate(self, bounds: Bounds | None = None) -> str:
+        """Return the text of the certificate; raise CertificateError if the C text does not compute the method."""
+        return step_certificate(self.certified)
+
+    @cached_property
+    def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
+        """States and sizes with the states after the step, computed with 40 digits from the formula of the method."""
+        import mpmath
+
+        states = [name for name, *_ in self._rates_program.signature.argument("y").components]
+        parameters = dict(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
+        functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in FUNCTIONS}
+        vectors = []
+        with mpmath.workdps(DIGITS):
+            for place, size in enumerate(SIZES):
+                start = [float((Fraction(-1) ** i) * Fraction(i + 2 + place, 7)) for i in range(len(states))]
+                values: dict[str, Any] = {
+                    name: mpmath.mpf(x) for name, x in (parameters | dict(zip(states, start, strict=True))).items()
+                }
+                scale = 1 + max(map(abs, parameters.values()), default=0.0)
+                dt = float(size) / 2 ** int(scale).bit_length()
+                after = stepped(
+                    self._rates_program, self.method, values | {"t": mpmath.mpf(0)}, mpmath.mpf(dt), functions,
+                    lambda value: mpmath.mpf(value.numerator) / value.denominator,
+                )  # fmt: skip
+                vectors.append((start, dt, [float(each) for each in after]))
+        return vectors
+
+    @property
+    def _parameter_names(self) -> list[str]:
+        return [name for a in self._rates_program.signature.arguments if a.name == "p" for name, *_ in a.components]
+
+    @cached_property
+    def _test(self) -> str:
+        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+        count, parameters = len(self._vectors[0][0]), self.rates.inputs.parameters
+        return "\n".join([
+            f"/* Test of {self.name}: returns 0 if double and float agree with values of {DIGITS} digits. */",
+            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', "",
+            f"#define STATES {count}", f"#define VECTORS {len(self._vectors)}", "",
+            _table("vectors[VECTORS][2][STATES]", [[start, after] for start, _, after in self._vectors]),
+            _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
+            *([_table(f"parameters[{len(parameters)}]", list(parameters))] if parameters else []), "",
+            *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
+            "int main(void)", "{", "    const int failed = check() || checkf();",
+            f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with {DIGITS} digits");',
+            "    return failed;", "}",
+        ]) + "\n"  # fmt: skip
+
+    def _check(self, real: Real, tolerance: str) -> list[str]:
+        parameters = self.rates.inputs.parameters
+        copies = [f"    {real.type} p[{len(parameters)}];",
+                  f"    for (int i = 0; i < {len(parameters)}; ++i)",
+                  f"        p[i] = ({real.type})parameters[i];"] if parameters else []  # fmt: skip
+        called = ", ".join(["0", "x", *(["p"] if parameters else []), f"({real.type})sizes[k]", "next"])
+        return [
+            f"static int check{real.suffix}(void)", "{", f"    {real.type} x[STATES], next[STATES];", *copies,
+            "    for (int k = 0; k < VECTORS; ++k) {", "        double scale = 1;",
+            "        for (int i = 0; i < STATES; ++i) {", f"            x[i] = ({real.type})vectors[k][0][i];",
+            "            scale = fmax(scale, fabs(vectors[k][1][i]));", "        }",
+            f"        {c_name(self.name, real)}({called});", "        for (int i = 0; i < STATES; ++i)",
+            f"            if (!(fabs(next[i] - vectors[k][1][i]) <= {tolerance}*scale))", "                return 1;",
+            "    }", "    return 0;", "}",
+        ]  # fmt: skip
+
+
+def _table(declared: str, values: Any) -> str:
+    """Return the C definition of a constant table of doubles."""
+
+    def text(value: Any) -> str:
+        return f"{{{', '.join(map(text, value))}}}" if isinstance(value, list) else repr(value)
+
+    return f"static const double {declared} = {text(values)};"
