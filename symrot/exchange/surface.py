@@ -1,0 +1,124 @@
+"""Triangulated surfaces: vertices merged by position, and the test that a surface is closed and oriented."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+
+__all__ = ["Surface", "merge", "require_closed", "shells"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)  # odd constants of hash functions
+
+
+class Surface(NamedTuple):
+    """Triangles in space; each triangle lists its corners counterclockwise as seen from outside the body.
+
+    Attributes
+    ----------
+    vertices : array, shape (n, 3)
+        Coordinates in the unit of the file; no two vertices are equal.
+    triangles : array, shape (m, 3)
+        Indices of vertices.
+    """
+
+    vertices: Floats
+    triangles: Indices
+
+    def flipped(self) -> "Surface":
+        """Return the surface with the opposite orientation."""
+        return Surface(self.vertices, np.ascontiguousarray(self.triangles[:, ::-1]))
+
+
+def merge(vertices: Floats, triangles: Indices) -> Surface:
+    """Return a surface in which vertices with equal coordinates are one vertex.
+
+    STL files repeat a vertex for each triangle, and other formats repeat it for each normal or colour.
+    """
+    points = np.ascontiguousarray(vertices, dtype=np.float64) + 0.0  # -0.0 and 0.0 are the same coordinate
+    keys = points.view(np.uint64)
+    mixed = np.zeros(len(points), np.uint64)
+    for column, mixer in enumerate(_MIXERS):
+        mixed = (mixed ^ keys[:, column]) * np.uint64(mixer)
+        mixed ^= mixed >> np.uint64(29)
+    _, first, number = np.unique(mixed, return_index=True, return_inverse=True)
+    if not np.array_equal(points[first[number]], points):  # two positions with the same hash
+        _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    return Surface(points[first], number.reshape(-1)[triangles].astype(np.int64))
+
+
+def _edges(surface: Surface) -> tuple[Indices, Indices]:
+    """Return the keys of the directed edges of all triangles, and of the same edges in the opposite direction."""
+    start = surface.triangles.ravel()
+    end = np.roll(surface.triangles, -1, axis=1).ravel()
+    count = len(surface.vertices)
+    return start * count + end, end * count + start
+
+
+def require_closed(surface: Surface, where: str) -> None:
+    """Raise InputError unless each edge is followed equally often in both directions.
+
+    This is the condition that the surface is the boundary of a region, so that its volume does not depend on the choice
+    of an origin. It also refuses a triangle that occurs twice.
+    """
+    forward, backward = _edges(surface)
+    if not np.array_equal(np.sort(forward), np.sort(backward)):
+        raise InputError(f"{where}: expected a closed surface, got {_defect(surface, forward, backward)}")
+    lowest = np.argmin(surface.triangles, axis=1)
+    rolled = np.take_along_axis(surface.triangles, (lowest[:, None] + np.arange(3)) % 3, axis=1)
+    keys = np.sort(_hashes(rolled))
+    if np.any(keys[1:] == keys[:-1]):
+        proper = rolled[(rolled[:, 0] != rolled[:, 1]) & (rolled[:, 1] != rolled[:, 2]) & (rolled[:, 2] != rolled[:, 0])]
+        repeats = len(proper) - len(np.unique(proper, axis=0))
+        if repeats:
+            raise InputError(f"{where}: expected each triangle once, got {repeats} that occur again; remove them")
+
+
+def _hashes(rows: Indices) -> NDArray[np.uint64]:
+    mixed = np.zeros(len(rows), np.uint64)
+    for column, mixer in enumerate(_MIXERS):
+        mixed = (mixed ^ rows[:, column].astype(np.uint64)) * np.uint64(mixer)
+        mixed ^= mixed >> np.uint64(29)
+    return mixed
+
+
+def _defect(surface: Surface, forward: Indices, backward: Indices) -> str:
+    """Return a clause that counts the open edges, or the edges at which neighbouring triangles disagree."""
+    low = np.minimum(forward, backward)
+    keys, number = np.unique(low, return_inverse=True)
+    balance = np.zeros(len(keys), np.int64)
+    np.add.at(balance, number, np.where(forward == backward, 0, np.where(forward == low, 1, -1)))
+    uses = np.bincount(number)
+    wrong = np.flatnonzero(balance)
+    is_open = uses[wrong] % 2 == 1
+    count = int(is_open.sum())
+    if count:
+        ends = divmod(int(keys[wrong[is_open][0]]), len(surface.vertices))
+        place = " to ".join(_point(surface.vertices[end]) for end in ends)
+        return f"{count} open edges, the first from {place}; close the holes or join the vertices in your mesh program"
+    return (
+        f"{len(wrong)} edges at which two neighbouring triangles have opposite orientation; make the normals consistent "
+        "in your mesh program"
+    )
+
+
+def _point(vertex: Floats) -> str:
+    return "(" + ", ".join(f"{x:.6g}" for x in vertex) + ")"
+
+
+def shells(surface: Surface) -> Indices:
+    """Return for each triangle the number, from 0, of its shell: a part that shares no vertex with the others."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    start = surface.triangles[:, (0, 1)].ravel()
+    end = surface.triangles[:, (1, 2)].ravel()
+    count = len(surface.vertices)
+    graph = coo_matrix((np.ones(len(start), np.int8), (start, end)), shape=(count, count))
+    _, labels = connected_components(graph, directed=False)
+    _, numbers = np.unique(labels[surface.triangles[:, 0]], return_inverse=True)
+    return numbers.astype(np.int64)
