@@ -6,7 +6,7 @@ proper crossing; for large meshes only the lines are affordable.
 """
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,11 +24,27 @@ MOST_TESTS = 50_000_000
 MOST_PAIRS = 5_000_000
 """Number of pairs of triangles, overlapping along one axis, up to which all pairs are searched for crossings."""
 
+MOST_SEARCHED = 200_000
+"""Number of triangles up to which a search of pairs is tried."""
+
 MOST_SHELLS = 1000
 NEAR = 1e-12  # distance, relative to the size of the mesh, below which two crossings of a line count as one place
 THIN = 1e-14  # area, relative to the size squared, below which a line may pass through an edge
 PLACES = ((0.36, 0.33), (0.21, 0.43), (0.55, 0.17))  # of a line within its triangle, tried in turn
 AXES = ((1, 2, 0), (2, 0, 1), (0, 1, 2))  # depth last
+
+
+class _Boxes(NamedTuple):
+    """The smallest and the largest coordinates of each triangle, shape (3 axes, number of triangles)."""
+
+    low: Floats
+    high: Floats
+
+    def around(self, axis: int, value: Any) -> NDArray[np.bool_]:
+        """Return for each triangle whether its range of a coordinate contains the value."""
+        within: NDArray[np.bool_] = self.low[axis] <= value
+        within &= self.high[axis] >= value
+        return within
 
 
 def require_boundary(surface: Surface, where: str) -> str:
@@ -40,13 +56,13 @@ def require_boundary(surface: Surface, where: str) -> str:
     count = int(numbers.max()) + 1
     if count > MOST_SHELLS:
         raise InputError(f"{where}: expected at most {MOST_SHELLS} shells (parts without common vertices), got {count}")
-    a, b, c = (surface.vertices[surface.triangles[:, corner]] for corner in range(3))
     size = float(np.ptp(surface.vertices, axis=0).max())
-    corners = np.stack([a, b, c]) - surface.vertices.min(axis=0)
-    corners /= size
+    columns = np.ascontiguousarray(((surface.vertices - surface.vertices.min(axis=0)) / size).T)
+    corners = np.stack([columns[:, surface.triangles[:, corner]] for corner in range(3)])
+    boxes = _Boxes(corners.min(axis=0), corners.max(axis=0))
     chosen = _chosen(corners, numbers, count)
-    lines = sum(_passes(corners, int(triangle), where, surface) for triangle in chosen)
-    searched = _search_pairs(surface, corners, where)
+    lines = sum(_passes(corners, boxes, int(triangle), where, surface) for triangle in chosen)
+    searched = len(surface.triangles) <= MOST_SEARCHED and _search_pairs(surface, boxes, where)
     parts = f"{count} shells" if count > 1 else "one shell"
     pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
     return f"closed, {parts}; inside and outside agree along {lines} of {len(chosen)} lines; {pairs}"
@@ -54,8 +70,8 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     """Return the triangles through which lines are drawn: the largest of each shell, and others at equal intervals."""
-    normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    areas = np.einsum("ij,ij->i", normals, normals)
+    edges = corners[1] - corners[0], corners[2] - corners[0]
+    areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
     last = np.flatnonzero(np.diff(numbers[order], append=count)) if count > 1 else np.array([0])
     largest = order[last]
@@ -65,14 +81,14 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
     return np.unique(np.concatenate([largest, others]))
 
 
-def _passes(corners: Floats, triangle: int, where: str, surface: Surface) -> int:
+def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
     """Return 1 if all points on a line through a triangle are outside or inside, 0 if the line meets an edge."""
-    own = corners[:, triangle]
+    own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
     axes = AXES[int(np.abs(normal).argmax())]
     for share, other in PLACES:
         target = own[0] + share * (own[1] - own[0]) + other * (own[2] - own[0])
-        profile = _profile(corners, target, axes)
+        profile = _profile(corners, boxes, target, axes)
         if profile is not None:
             depths, windings = profile
             wrong = np.flatnonzero((windings != 0) & (windings != 1))
@@ -82,43 +98,34 @@ def _passes(corners: Floats, triangle: int, where: str, surface: Surface) -> int
     return 0
 
 
-def _profile(corners: Floats, target: Floats, axes: tuple[int, int, int]) -> tuple[Floats, NDArray[np.int64]] | None:
+def _profile(
+    corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
+) -> tuple[Floats, NDArray[np.int64]] | None:
     """Return the depths at which a line crosses the surface and the winding number behind each; None near an edge."""
     u, v, depth = axes
-    near = _around(corners[:, :, u], target[u]) & _around(corners[:, :, v], target[v])
-    candidates = corners[:, np.flatnonzero(near)]
-    x, y = candidates[:, :, u] - target[u], candidates[:, :, v] - target[v]
+    near = np.flatnonzero(boxes.around(u, target[u]))
+    near = near[_Boxes(boxes.low[:, near], boxes.high[:, near]).around(v, target[v])]
+    candidates = corners[:, :, near]
+    x, y = candidates[:, u] - target[u], candidates[:, v] - target[v]
     areas = np.stack([x[i] * y[j] - x[j] * y[i] for i, j in ((1, 2), (2, 0), (0, 1))])
     inside = (areas > THIN).all(axis=0) | (areas < -THIN).all(axis=0)
     outside = (areas > THIN).any(axis=0) & (areas < -THIN).any(axis=0)
     if not np.all(inside | outside):
         return None
-    hits, areas = candidates[:, inside], areas[:, inside]
-    depths = (areas * hits[:, :, depth]).sum(axis=0) / areas.sum(axis=0)
+    hits, areas = candidates[:, :, inside], areas[:, inside]
+    depths = (areas * hits[:, depth]).sum(axis=0) / areas.sum(axis=0)
     order = np.argsort(depths, kind="stable")
     windings = -np.cumsum(np.sign(areas[0, order]).astype(np.int64))
     ends = np.flatnonzero(np.append(np.diff(depths[order]) > NEAR, True))  # the last crossing at each place
     return depths[order][ends], windings[ends]
 
 
-def _around(coordinates: Floats, value: Any) -> NDArray[np.bool_]:
-    first, second, third = coordinates
-    low = np.minimum(np.minimum(first, second), third)
-    high = np.maximum(np.maximum(first, second), third)
-    within: NDArray[np.bool_] = (low <= value) & (value <= high)
-    return within
-
-
-def _refuse(
-    winding: int, target: Floats, axis: int, depths: Floats, index: int, where: str, surface: Surface
-) -> None:
+def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int, where: str, surface: Surface) -> None:
     point = target.copy()
     point[axis] = (depths[index] + depths[min(index + 1, len(depths) - 1)]) / 2
     size = float(np.ptp(surface.vertices, axis=0).max())
     place = ", ".join(f"{x:.6g}" for x in surface.vertices.min(axis=0) + size * point)
-    reason = (
-        "part of it is turned inside out" if winding < 0 else "parts overlap, or a cavity has its normals outwards"
-    )
+    reason = "part of it is turned inside out" if winding < 0 else "parts overlap, or a cavity has its normals outwards"
     raise InputError(
         f"{where}: expected a surface that does not cross itself, with each point outside or inside once, got a winding "
         f"number of {winding} at ({place}): {reason}"
@@ -128,15 +135,15 @@ def _refuse(
 # --- pairs of triangles -----------------------------------------------------------------------------------------------
 
 
-def _search_pairs(surface: Surface, corners: Floats, where: str) -> bool:
+def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
     """Return whether all pairs of triangles were searched; raise InputError for two that cross.
 
     A crossing is proper: an edge of one triangle passes through the interior of another with which it shares no vertex.
     """
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    axis = int(np.argmin((high - low).mean(axis=0)))
-    order = np.argsort(low[:, axis], kind="stable")
-    last = np.searchsorted(low[order, axis], high[order, axis], side="right")
+    low, high = boxes
+    axis = int(np.argmin((high - low).mean(axis=1)))
+    order = np.argsort(low[axis], kind="stable")
+    last = np.searchsorted(low[axis, order], high[axis, order], side="right")
     counts = last - np.arange(len(order)) - 1
     if int(counts.sum()) > MOST_PAIRS:
         return False
@@ -147,7 +154,7 @@ def _search_pairs(surface: Surface, corners: Floats, where: str) -> bool:
     overlap = np.ones(len(i), bool)
     for other in range(3):
         if other != axis:
-            overlap &= (low[i, other] <= high[j, other]) & (low[j, other] <= high[i, other])
+            overlap &= (low[other, i] <= high[other, j]) & (low[other, j] <= high[other, i])
     i, j = i[overlap], j[overlap]
     shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).any(axis=(1, 2))
     i, j = i[~shared], j[~shared]

@@ -52,9 +52,7 @@ class _Body(NamedTuple):
     volume: Fraction
 
 
-def mesh(
-    path: str | Path, *, mass: Any = None, density: Any = None, scale: Any = 1, flip: bool = False
-) -> Inertial:
+def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any = 1, flip: bool = False) -> Inertial:
     """Return mass, centre of mass and inertia of the body that a closed mesh bounds.
 
     The result is right for the polyhedron to 1e-12, and exact for meshes of up to 20 000 triangles.
@@ -213,9 +211,7 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
     center = [middle + shift for middle, shift in zip(body.center, offset, strict=True)]
     error = Fraction(0)
     if not exact:
-        shift_errors = [
-            (first[i][1] + abs(offset[i]) * mass_error) / (mass - mass_error) for i in range(3)
-        ]
+        shift_errors = [(first[i][1] + abs(offset[i]) * mass_error) / (mass - mass_error) for i in range(3)]
         second_error = max(
             body.second[i][j][1] + abs(first[i][0]) * shift_errors[j] + (abs(offset[j]) + shift_errors[j]) * first[i][1]
             for i in range(3)
@@ -226,7 +222,9 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
         if trace <= 0 or smallest * LARGEST_SHARE * trace <= second_error:
             return None
         radius = Fraction(float(trace / mass) ** 0.5)
-        error = max(mass_error / mass, 3 * second_error / trace + mass_error / mass, *(e / radius for e in shift_errors))
+        error = max(
+            mass_error / mass, 3 * second_error / trace + mass_error / mass, *(e / radius for e in shift_errors)
+        )
         if error > LARGEST_ERROR:
             return None
     return amount or mass, center, tensor, error

@@ -70,12 +70,24 @@ def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
     if kind in ("obj", "glb"):
         options["skip_materials"] = True
     scene = trimesh.load_scene(BytesIO(content), file_type=kind, **options)
-    meshes = [item for item in scene.dump(concatenate=False) if hasattr(item, "faces")]
-    vertices = [np.asarray(item.vertices, dtype=np.float64).reshape(-1, 3) for item in meshes]
-    offsets = np.cumsum([0, *map(len, vertices)])
-    faces = [np.asarray(item.faces).reshape(-1, 3) + start for item, start in zip(meshes, offsets, strict=False)]
-    empty = np.empty((0, 3))
-    return np.concatenate([empty, *vertices]), np.concatenate([empty.astype(np.int64), *faces])
+    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        if not hasattr(geometry, "faces"):
+            continue
+        points = np.asarray(geometry.vertices, dtype=np.float64).reshape(-1, 3)
+        if not np.array_equal(transform, np.eye(4)):
+            points = points @ transform[:3, :3].T + transform[:3, 3]
+        corners = np.asarray(geometry.faces, dtype=np.int64).reshape(-1, 3)
+        if np.linalg.det(transform[:3, :3]) < 0:  # a reflection reverses the orientation
+            corners = corners[:, ::-1]
+        vertices.append(points)
+        faces.append(corners + count)
+        count += len(points)
+    if len(vertices) == 2:
+        return vertices[1], faces[1]
+    return np.concatenate(vertices), np.concatenate(faces)
 
 
 def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
@@ -89,10 +101,13 @@ def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
             f"{where}: expected corners from 0 to {len(vertices) - 1}, got a triangle with corner "
             f"{triangles.min() if triangles.min() < 0 else triangles.max()}"
         )
-    vertices = vertices[np.unique(triangles)] if not np.isfinite(vertices).all() else vertices
-    wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    if not np.isfinite(vertices.sum()):  # a fast test: few meshes need the next lines
+        vertices, triangles = _without_strays(vertices, triangles)
+    wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1)) if not np.isfinite(vertices.sum()) else ()
     if len(wrong):
-        raise InputError(f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()} and {len(wrong) - 1} more")
+        raise InputError(
+            f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()} and {len(wrong) - 1} more"
+        )
     largest = float(np.abs(vertices).max())
     if largest > LARGEST_COORDINATE:
         raise InputError(f"{where}: expected coordinates up to {LARGEST_COORDINATE:g}, got {largest:.6g}")

@@ -40,23 +40,30 @@ def merge(vertices: Floats, triangles: Indices) -> Surface:
     STL files repeat a vertex for each triangle, and other formats repeat it for each normal or colour.
     """
     points = np.ascontiguousarray(vertices, dtype=np.float64) + 0.0  # -0.0 and 0.0 are the same coordinate
-    keys = points.view(np.uint64)
     mixed = np.zeros(len(points), np.uint64)
     for column, mixer in enumerate(_MIXERS):
-        mixed = (mixed ^ keys[:, column]) * np.uint64(mixer)
+        mixed = (mixed ^ points.view(np.uint64)[:, column]) * np.uint64(mixer)
         mixed ^= mixed >> np.uint64(29)
-    _, first, number = np.unique(mixed, return_index=True, return_inverse=True)
-    if not np.array_equal(points[first[number]], points):  # two positions with the same hash
-        _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    return Surface(points[first], number.reshape(-1)[triangles].astype(np.int64))
+    order = np.argsort(mixed)
+    ordered = mixed[order]
+    is_new = np.append(True, ordered[1:] != ordered[:-1])
+    number = np.empty(len(points), np.int64)
+    number[order] = np.cumsum(is_new) - 1
+    first = order[is_new]
+    merged = points[first]
+    if not np.array_equal(merged[number], points):  # two positions with the same hash
+        merged, number = np.unique(points, axis=0, return_inverse=True)
+    return Surface(merged, number.reshape(-1)[triangles])
 
 
 def _edges(surface: Surface) -> tuple[Indices, Indices]:
-    """Return the keys of the directed edges of all triangles, and of the same edges in the opposite direction."""
-    start = surface.triangles.ravel()
-    end = np.roll(surface.triangles, -1, axis=1).ravel()
-    count = len(surface.vertices)
-    return start * count + end, end * count + start
+    """Return the starts and the ends of the edges of all triangles."""
+    columns = [np.ascontiguousarray(surface.triangles[:, corner]) for corner in range(3)]
+    return np.concatenate(columns), np.concatenate([columns[1], columns[2], columns[0]])
+
+
+def _undirected(start: Indices, end: Indices, count: int) -> Indices:
+    return np.minimum(start, end) * count + np.maximum(start, end)
 
 
 def require_closed(surface: Surface, where: str) -> None:
@@ -65,33 +72,30 @@ def require_closed(surface: Surface, where: str) -> None:
     This is the condition that the surface is the boundary of a region, so that its volume does not depend on the choice
     of an origin. It also refuses a triangle that occurs twice.
     """
-    forward, backward = _edges(surface)
-    if not np.array_equal(np.sort(forward), np.sort(backward)):
-        raise InputError(f"{where}: expected a closed surface, got {_defect(surface, forward, backward)}")
-    lowest = np.argmin(surface.triangles, axis=1)
-    rolled = np.take_along_axis(surface.triangles, (lowest[:, None] + np.arange(3)) % 3, axis=1)
-    keys = np.sort(_hashes(rolled))
-    if np.any(keys[1:] == keys[:-1]):
-        proper = rolled[(rolled[:, 0] != rolled[:, 1]) & (rolled[:, 1] != rolled[:, 2]) & (rolled[:, 2] != rolled[:, 0])]
+    start, end = _edges(surface)
+    keys = np.sort(_undirected(start, end, len(surface.vertices)) * 2 + (start > end))
+    if len(keys) % 2 == 0 and np.array_equal(keys[::2] ^ 1, keys[1::2]) and np.all(keys[2::2] != keys[:-2:2]):
+        return  # two triangles at each edge, which follow it in opposite directions
+    count = len(surface.vertices)
+    ordered = np.sort(start * count + end)
+    if not np.array_equal(ordered, np.sort(end * count + start)):
+        raise InputError(f"{where}: expected a closed surface, got {_defect(surface)}")
+    if np.any(ordered[1:] == ordered[:-1]):  # a triangle that occurs twice has each of its edges twice
+        lowest = np.argmin(surface.triangles, axis=1)
+        rolled = np.take_along_axis(surface.triangles, (lowest[:, None] + np.arange(3)) % 3, axis=1)
+        proper = rolled[
+            (rolled[:, 0] != rolled[:, 1]) & (rolled[:, 1] != rolled[:, 2]) & (rolled[:, 2] != rolled[:, 0])
+        ]
         repeats = len(proper) - len(np.unique(proper, axis=0))
         if repeats:
             raise InputError(f"{where}: expected each triangle once, got {repeats} that occur again; remove them")
 
 
-def _hashes(rows: Indices) -> NDArray[np.uint64]:
-    mixed = np.zeros(len(rows), np.uint64)
-    for column, mixer in enumerate(_MIXERS):
-        mixed = (mixed ^ rows[:, column].astype(np.uint64)) * np.uint64(mixer)
-        mixed ^= mixed >> np.uint64(29)
-    return mixed
-
-
-def _defect(surface: Surface, forward: Indices, backward: Indices) -> str:
+def _defect(surface: Surface) -> str:
     """Return a clause that counts the open edges, or the edges at which neighbouring triangles disagree."""
-    low = np.minimum(forward, backward)
-    keys, number = np.unique(low, return_inverse=True)
-    balance = np.zeros(len(keys), np.int64)
-    np.add.at(balance, number, np.where(forward == backward, 0, np.where(forward == low, 1, -1)))
+    start, end = _edges(surface)
+    keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)
+    balance = np.bincount(number, weights=np.sign(end - start)).astype(np.int64)
     uses = np.bincount(number)
     wrong = np.flatnonzero(balance)
     is_open = uses[wrong] % 2 == 1
@@ -115,9 +119,9 @@ def shells(surface: Surface) -> Indices:
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    start = surface.triangles[:, (0, 1)].ravel()
-    end = surface.triangles[:, (1, 2)].ravel()
     count = len(surface.vertices)
+    start = np.repeat(surface.triangles[:, 0], 2)  # two edges of a triangle connect its three corners
+    end = surface.triangles[:, 1:].ravel()
     graph = coo_matrix((np.ones(len(start), np.int8), (start, end)), shape=(count, count))
     _, labels = connected_components(graph, directed=False)
     _, numbers = np.unique(labels[surface.triangles[:, 0]], return_inverse=True)
