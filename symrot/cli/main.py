@@ -14,6 +14,7 @@ from typing import Any, NoReturn, TextIO
 
 import symrot
 from symrot.cli import certify as cli_certify
+from symrot.cli import exchange as cli_exchange
 from symrot.cli import exercises as cli_exercises
 from symrot.cli import scenes as cli_scenes
 from symrot.cli.output import (
@@ -489,6 +490,7 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
     **cli_exercises.COMMANDS,
+    **cli_exchange.COMMANDS,
     "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),

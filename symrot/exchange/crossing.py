@@ -127,8 +127,8 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
     place = ", ".join(f"{x:.6g}" for x in surface.vertices.min(axis=0) + size * point)
     reason = "part of it is turned inside out" if winding < 0 else "parts overlap, or a cavity has its normals outwards"
     raise InputError(
-        f"{where}: expected a surface that does not cross itself, with each point outside or inside once, got a winding "
-        f"number of {winding} at ({place}): {reason}"
+        f"{where}: expected a surface that does not cross itself, with each point outside or inside once, got a "
+        f"winding number of {winding} at ({place}): {reason}"
     )
 
 

@@ -14,7 +14,7 @@ from symrot.inertia.tensor import Tensor, Vector
 __all__ = ["Inertial"]
 
 LONGEST_NUMBER = 600
-"""Largest size, in bits, of a number that :meth:`Inertial.table` leaves exact: scene files limit the text of a number."""
+"""Largest size, in bits, of a number that :meth:`Inertial.table` leaves exact, since scene files limit its text."""
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,7 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     --------
     >>> import symrot
     >>> part = symrot.mesh("part.stl", density=2700, scale="1/1000")  # doctest: +SKIP
-    >>> scene = symrot.Scene.build(body=part.table(), initial={"omega": [0, 1, 0]}, span={"t": [0, 10]})  # doctest: +SKIP
+    >>> body = part.table()  # doctest: +SKIP
     """
     return read_mesh(Path(path), str(path), mass=mass, density=density, scale=scale, flip=flip).inertial
 
@@ -222,9 +222,8 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
         if trace <= 0 or smallest * LARGEST_SHARE * trace <= second_error:
             return None
         radius = Fraction(float(trace / mass) ** 0.5)
-        error = max(
-            mass_error / mass, 3 * second_error / trace + mass_error / mass, *(e / radius for e in shift_errors)
-        )
+        tensor_error = 3 * second_error / trace + mass_error / mass
+        error = max(tensor_error, *(shift_error / radius for shift_error in shift_errors))
         if error > LARGEST_ERROR:
             return None
     return amount or mass, center, tensor, error
@@ -235,6 +234,6 @@ def _require_volume(body: _Body, where: str) -> None:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")
     if body.volume < 0:
         raise InputError(
-            f"{where}: expected a mesh whose normals point outwards, got one that is turned inside out, with a volume of "
-            f"{float(body.volume):.6g} m^3; write flip = true"
+            f"{where}: expected a mesh whose normals point outwards, got one that is turned inside out, with a volume "
+            f"of {float(body.volume):.6g} m^3; write flip = true"
         )

@@ -101,9 +101,7 @@ def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
             f"{where}: expected corners from 0 to {len(vertices) - 1}, got a triangle with corner "
             f"{triangles.min() if triangles.min() < 0 else triangles.max()}"
         )
-    if not np.isfinite(vertices.sum()):  # a fast test: few meshes need the next lines
-        vertices, triangles = _without_strays(vertices, triangles)
-    wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1)) if not np.isfinite(vertices.sum()) else ()
+    wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
     if len(wrong):
         raise InputError(
             f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()} and {len(wrong) - 1} more"

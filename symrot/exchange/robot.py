@@ -34,11 +34,14 @@ class Link(NamedTuple):
         Mass, centre and tensor, in the axes of the link; None if there is a problem.
     problem : str
         A clause such as ``"expected a positive mass, got 0"``; empty if there is none.
+    empty : bool
+        Whether the link has no element ``<inertial>``, as links for frames and sensors.
     """
 
     name: str
     inertial: Inertial | None
     problem: str = ""
+    empty: bool = False
 
 
 class Format(NamedTuple):
@@ -97,7 +100,7 @@ def link(path: str | Path, name: str = "") -> Inertial:
     --------
     >>> import symrot
     >>> arm = symrot.link("robot.urdf", "upper_arm")  # doctest: +SKIP
-    >>> scene = symrot.Scene.build(body=arm.table(), initial={"omega": [0, 1, 0]}, span={"t": [0, 10]})  # doctest: +SKIP
+    >>> body = arm.table()  # doctest: +SKIP
     """
     form, root = read_robot(path)[:2]
     elements = _links(form, root, str(path))
@@ -144,7 +147,7 @@ def _link(form: Format, root: Element, element: Element) -> Link:
         inertial = form.read(element, root)
         _require_body(inertial)
     except InputError as problem:
-        return Link(name, None, str(problem))
+        return Link(name, None, str(problem), element.find("inertial") is None)
     return Link(name, inertial)
 
 
@@ -294,8 +297,8 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
         rotation = rotation_of(_numbers(inertial.get(key), count, f"inertial.{key}"), angles)
     if ways == ["fullinertia"]:
         order = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-        values = _numbers(inertial.get("fullinertia"), 6, "inertial.fullinertia")
-        return _body(element, mass, center, _tensor(dict(zip(order, values, strict=True))), None)
+        entries = _numbers(inertial.get("fullinertia"), 6, "inertial.fullinertia")
+        return _body(element, mass, center, _tensor(dict(zip(order, entries, strict=True))), None)
     moments = _numbers(inertial.get("diaginertia"), 3, "inertial.diaginertia")
     diagonal = matrix([[m * entry for entry in row] for m, row in zip(moments, IDENTITY, strict=True)])
     return _body(element, mass, center, diagonal, rotation)

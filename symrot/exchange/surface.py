@@ -105,8 +105,8 @@ def _defect(surface: Surface) -> str:
         place = " to ".join(_point(surface.vertices[end]) for end in ends)
         return f"{count} open edges, the first from {place}; close the holes or join the vertices in your mesh program"
     return (
-        f"{len(wrong)} edges at which two neighbouring triangles have opposite orientation; make the normals consistent "
-        "in your mesh program"
+        f"{len(wrong)} edges at which two neighbouring triangles have opposite orientation; make the normals "
+        "consistent in your mesh program"
     )
 
 

@@ -10,7 +10,7 @@ follow from a recurrence, one factor at a time. The same recurrence serves for i
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import factorial, fsum, frexp
+from math import factorial, frexp, fsum
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -17,6 +17,7 @@ from symrot.inertia.principal import Principal, principal_axes, require_admissib
 from symrot.inertia.shapes import SHAPES, Coordinate, Shape, scalars
 from symrot.inertia.tensor import about_center_of_mass
 from symrot.scene.body import Body
+from symrot.scene.mesh_body import Facet
 
 __all__ = ["Patch", "Point", "how_drawn", "patches"]
 
@@ -66,6 +67,8 @@ def patches(body: Body) -> list[Patch]:
     >>> len(patches(symrot.load_scene("tumbling_prism").body))
     6
     """
+    if body.facets:
+        return [_of_facet(facet, body) for facet in body.facets]
     if not body.parts:
         return _equivalent_box(body)
     return [patch for part in body.parts for patch in _of_part(part, body)]
@@ -73,11 +76,20 @@ def patches(body: Body) -> list[Patch]:
 
 def how_drawn(body: Body) -> str:
     """Return a sentence that a body is drawn as a box, if only its inertia is known; otherwise an empty text."""
-    if body.parts:
+    if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
         return "The body is drawn as a box with the proportions of its moments about the fixed point."
     return "The body is drawn as the uniform box with its moments."
+
+
+def _of_facet(facet: Facet, body: Body) -> Patch:
+    """Return a triangle as a grid of two times two points, of which the last two coincide."""
+    corners = []
+    for corner in facet:
+        x, y, z = (value - float(start) for value, start in zip(corner, body.origin, strict=True))
+        corners.append((x, y, z))
+    return Patch([*corners, corners[2]], 2, 2)
 
 
 def _of_part(part: Part, body: Body) -> Iterator[Patch]:
