@@ -52,17 +52,16 @@ def _print(inertial: "Inertial", options: Namespace) -> int:
     if options.json:
         say_json(inertials.facts(inertial))
     elif options.toml:
-        from symrot.scene.content import toml_text
-
-        say(toml_text({"body": dict(inertial.table())}).splitlines())
+        say(inertials.table_text(inertial).splitlines())
     else:
         say(inertials.lines(inertial))
     return OK
 
 
 def _inertia_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE[:LINK]",
-                        help="a mesh (STL, OBJ, PLY, GLB), or a robot (URDF, MJCF, SDF) and the name of a link")  # fmt: skip
+    parser.add_argument(
+        "file", metavar="FILE[:LINK]", help="a mesh (STL, OBJ, PLY, GLB), or a robot (URDF, MJCF, SDF) and its link"
+    )
     parser.add_argument("--mass", metavar="X", help="mass of a mesh, kg")
     parser.add_argument("--density", metavar="X", help="density of a mesh, kg/m^3: a number or a polynomial in x, y, z")
     parser.add_argument("--scale", metavar="X", help="length of the unit of a mesh, m: 1/1000 for mm (default: 1)")

@@ -5,7 +5,6 @@ A line through the body shows the winding numbers of all points on it. A search 
 proper crossing; for large meshes only the lines are affordable.
 """
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -139,6 +138,7 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
     """Return whether all pairs of triangles were searched; raise InputError for two that cross.
 
     A crossing is proper: an edge of one triangle passes through the interior of another with which it shares no vertex.
+    Triangles that only touch, up to rounding errors, do not cross.
     """
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))
@@ -188,28 +188,14 @@ def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
-    """Return on which side of the plane (a, b, c) each vertex d is: the exact sign, by doubles where they suffice."""
+    """Return on which side of the plane (a, b, c) each vertex d is; 0 if rounding errors could change the side."""
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s
     products = np.stack([u[:, i] * (v[:, j] * w[:, k]) for i, j, k in _PERMUTATIONS])
     value = products[:3].sum(axis=0) - products[3:].sum(axis=0)
     bound = np.abs(products).sum(axis=0) * 2.0**-48
-    signs = np.sign(value).astype(np.int64)
-    for index in np.flatnonzero(np.abs(value) <= bound):
-        signs[index] = _exact_side(*(x[index] for x in (p, q, r, s)))
+    signs: NDArray[np.int64] = np.where(np.abs(value) <= bound, 0, np.sign(value)).astype(np.int64)
     return signs
 
 
 _PERMUTATIONS = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (1, 0, 2), (2, 1, 0))
-
-
-def _exact_side(p: Floats, q: Floats, r: Floats, s: Floats) -> int:
-    from fractions import Fraction
-
-    def vector(point: Floats) -> Iterator[Fraction]:
-        return (Fraction(float(x)) - Fraction(float(y)) for x, y in zip(point, s, strict=True))
-
-    from symrot.inertia.tensor import determinant
-
-    value = determinant([tuple(vector(point)) for point in (p, q, r)])
-    return int(value > 0) - int(value < 0)

@@ -42,7 +42,7 @@ def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
 
 def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
     """Return the rotation of a quaternion, scalar first, after division by its norm."""
-    w, x, y, z = _direction(values, "a quaternion")
+    w, x, y, z = _direction(values, "a quaternion that is not zero")
     return matrix([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
@@ -52,7 +52,7 @@ def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
 
 def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
     half = angles.angle(values[3]).scaled(Fraction(1, 2))
-    axis = _direction(values[:3], "an axis")
+    axis = _direction(values[:3], "an axis that is not zero")
     return of_quaternion([half.cos, *(rounded(half.sin * x) if half.sin * x else Fraction(0) for x in axis)], angles)
 
 
@@ -67,15 +67,17 @@ def _of_euler(values: Numbers, angles: Angles) -> Tensor:
 
 def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
     """Return the rotation whose x axis is given, and whose y axis is the second vector made orthogonal to it."""
-    x = _direction(values[:3], "an x axis")
+    x = _direction(values[:3], "an x axis that is not zero")
     slope = dot(values[3:], x)
-    y = _direction([b - slope * a for a, b in zip(x, values[3:], strict=True)], "a y axis that is not parallel to x")
+    y = _direction(
+        [b - slope * a for a, b in zip(x, values[3:], strict=True)], "a y axis that is not parallel to the x axis"
+    )
     return transpose([x, y, cross(x, y)])
 
 
 def _of_z_axis(values: Numbers, angles: Angles) -> Tensor:
     """Return the smallest rotation that carries the z axis into a vector."""
-    x, y, z = _direction(values, "a z axis")
+    x, y, z = _direction(values, "a z axis that is not zero")
     if x == y == 0:
         return of_quaternion(
             [Fraction(1), *[Fraction(0)] * 3] if z > 0 else [Fraction(n) for n in (0, 1, 0, 0)], angles
@@ -85,7 +87,7 @@ def _of_z_axis(values: Numbers, angles: Angles) -> Tensor:
 
 def _direction(values: Numbers, what: str) -> tuple[Fraction, ...]:
     if not any(values):
-        raise InputError(f"expected {what} that is not zero, got {show(list(values))}")
+        raise InputError(f"expected {what}, got {show(list(values))}")
     return unit(values)
 
 

@@ -1,13 +1,16 @@
 """Text and facts of bodies that were read from meshes and robot files."""
 
 from collections.abc import Sequence
+from decimal import Context, Decimal
+from fractions import Fraction
 from typing import Any
 
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import quaternion_of
 from symrot.exchange.robot import Link
+from symrot.scene.content import toml_text
 
-__all__ = ["facts", "lines", "link_facts", "link_lines"]
+__all__ = ["facts", "lines", "link_facts", "link_lines", "table_text"]
 
 
 def facts(inertial: Inertial) -> dict[str, Any]:
@@ -47,6 +50,17 @@ def lines(inertial: Inertial) -> list[str]:
         rows.append(("surface", table["checks"]))
     width = max(len(name) for name, _ in rows)
     return [f"{inertial.name}, about its centre of mass", *(f"  {name:{width}}  {text}" for name, text in rows)]
+
+
+def table_text(inertial: Inertial) -> str:
+    """Return the table ``[body]`` of a scene as TOML, with at most 34 digits of each number."""
+    table = dict(inertial.table())
+    rows = [[_decimal(entry) for entry in row] for row in inertial.inertia]
+    return toml_text({"body": {**table, "mass": _decimal(inertial.mass), "inertia": rows}})
+
+
+def _decimal(value: Fraction) -> Decimal:
+    return Context(prec=34).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def _numbers(values: Sequence[float]) -> str:
