@@ -36,6 +36,11 @@ class Link(NamedTuple):
         A clause such as ``"expected a positive mass, got 0"``; empty if there is none.
     empty : bool
         Whether the link has no element ``<inertial>``, as links for frames and sensors.
+
+    Examples
+    --------
+    >>> Link("tool", None, "expected an element <inertial>, got none", empty=True).name
+    'tool'
     """
 
     name: str
@@ -59,6 +64,11 @@ def links(path: str | Path) -> tuple[Link, ...]:
     ----------
     path : str or Path
         A file in the format URDF, MJCF or SDF.
+
+    Returns
+    -------
+    tuple of Link
+        In the order of the file.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """Mass properties of polyhedra: exact sums of fractions, closed forms of solids, laws of translation and rotation."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -172,7 +173,7 @@ def ring(count):
 ], ids=["sphere", "cylinder", "torus"])  # fmt: skip
 def test_refined_meshes_approach_the_solid_with_order_2(make, levels, expected):
     errors = [np.abs(np.diag(floats(body(make(level), mass=1).inertia)) - expected).max() for level in levels]
-    orders = [np.log2(before / after) for before, after in zip(errors, errors[1:], strict=False)]
+    orders = [np.log2(before / after) for before, after in pairwise(errors)]
     assert orders == pytest.approx([2, 2], abs=0.1)
 
 
