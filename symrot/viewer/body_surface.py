@@ -17,7 +17,6 @@ from symrot.inertia.principal import Principal, principal_axes, require_admissib
 from symrot.inertia.shapes import SHAPES, Coordinate, Shape, scalars
 from symrot.inertia.tensor import about_center_of_mass
 from symrot.scene.body import Body
-from symrot.scene.mesh_body import Facet
 
 __all__ = ["Patch", "Point", "how_drawn", "patches"]
 
@@ -41,12 +40,15 @@ class Patch(NamedTuple):
         Size of the grid.
     is_hole : bool
         Whether the part is subtracted from the body.
+    is_mesh : bool
+        Whether the patch is a mesh, no grid: each row is a triangle, given by its three corners.
     """
 
     points: list[Point]
     rows: int
     columns: int
     is_hole: bool = False
+    is_mesh: bool = False
 
 
 def patches(body: Body) -> list[Patch]:
@@ -68,7 +70,7 @@ def patches(body: Body) -> list[Patch]:
     6
     """
     if body.facets:
-        return [_of_facet(facet, body) for facet in body.facets]
+        return [_of_facets(body)]
     if not body.parts:
         return _equivalent_box(body)
     return [patch for part in body.parts for patch in _of_part(part, body)]
@@ -83,13 +85,11 @@ def how_drawn(body: Body) -> str:
     return "The body is drawn as the uniform box with its moments."
 
 
-def _of_facet(facet: Facet, body: Body) -> Patch:
-    """Return a triangle as a grid of two times two points, of which the last two coincide."""
-    corners = []
-    for corner in facet:
-        x, y, z = (value - float(start) for value, start in zip(corner, body.origin, strict=True))
-        corners.append((x, y, z))
-    return Patch([*corners, corners[2]], 2, 2)
+def _of_facets(body: Body) -> Patch:
+    """Return the triangles of a mesh as one patch."""
+    start = [float(value) for value in body.origin]
+    points = [(x - start[0], y - start[1], z - start[2]) for facet in body.facets for x, y, z in facet]
+    return Patch(points, len(body.facets), 3, is_mesh=True)
 
 
 def _of_part(part: Part, body: Body) -> Iterator[Patch]:

@@ -199,3 +199,20 @@ def test_the_command_prints_text_json_and_a_table(stl, capsys):
     assert "inertia = [[25.0, 0.0, 0.0]" in capsys.readouterr().out
     assert main(["inertia", str(stl)]) == 2
     assert "expected exactly one of mass" in capsys.readouterr().err
+
+
+def test_pictures_show_a_small_mesh_and_the_box_of_a_large_one(tmp_path, monkeypatch):
+    from symrot.scene import mesh_body
+    from symrot.viewer.body_surface import how_drawn, patches
+    from symrot.viewer.film import _polygons
+
+    write(tmp_path / "ball.ply", sphere(2))
+    path = scene_file(tmp_path, 'mesh = "ball.ply"\nmass = 12')
+    body = symrot.load_scene(path).body
+    (patch,) = patches(body)
+    assert patch.is_mesh and patch.rows == len(_polygons(patch)) == 128
+    assert how_drawn(body) == ""
+    monkeypatch.setattr(mesh_body, "MOST_FACETS", 127)
+    large = symrot.load_scene(path).body
+    assert len(patches(large)) == 6 and large.inertia == body.inertia
+    assert "box" in how_drawn(large)
