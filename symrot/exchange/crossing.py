@@ -57,7 +57,11 @@ def require_boundary(surface: Surface, where: str) -> str:
         raise InputError(f"{where}: expected at most {MOST_SHELLS} shells (parts without common vertices), got {count}")
     size = float(np.ptp(surface.vertices, axis=0).max())
     columns = np.ascontiguousarray(((surface.vertices - surface.vertices.min(axis=0)) / size).T)
-    corners = np.stack([columns[:, surface.triangles[:, corner]] for corner in range(3)])
+    corners = np.empty((3, 3, len(surface.triangles)))  # corner, axis, triangle
+    for corner in range(3):
+        index = np.ascontiguousarray(surface.triangles[:, corner])
+        for axis in range(3):
+            np.take(columns[axis], index, out=corners[corner, axis])
     boxes = _Boxes(corners.min(axis=0), corners.max(axis=0))
     chosen = _chosen(corners, numbers, count)
     lines = sum(_passes(corners, boxes, int(triangle), where, surface) for triangle in chosen)

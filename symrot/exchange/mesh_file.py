@@ -101,12 +101,10 @@ def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
             f"{where}: expected corners from 0 to {len(vertices) - 1}, got a triangle with corner "
             f"{triangles.min() if triangles.min() < 0 else triangles.max()}"
         )
-    wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
-    if len(wrong):
-        raise InputError(
-            f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()} and {len(wrong) - 1} more"
-        )
-    largest = float(np.abs(vertices).max())
+    if not np.isfinite(vertices).all():
+        wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+        raise InputError(f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()}")
+    largest = float(max(vertices.max(), -vertices.min()))
     if largest > LARGEST_COORDINATE:
         raise InputError(f"{where}: expected coordinates up to {LARGEST_COORDINATE:g}, got {largest:.6g}")
     return merge(vertices, triangles)
