@@ -25,6 +25,9 @@ __all__ = ["MeshBody", "mesh", "polyhedron", "read_mesh"]
 MOST_EXACT = 200_000
 """Number of triangles times number of integrals up to which integrals are always exact."""
 
+LARGEST_WORK = 30_000_000
+"""Number of triangles times number of integrals up to which exact integrals are an alternative to doubles."""
+
 LARGEST_ERROR = Fraction(1, 10**12)
 """Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly."""
 
@@ -126,15 +129,23 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
     else:
         amount, polynomial = None, _density(density, f"{where}: density")
     degree = _degree(polynomial, density, unit, where)
-    few = len(surface.triangles) * len(exponents(degree)) <= MOST_EXACT
-    methods = (exact_moments,) if few else (approximate_moments, exact_moments)
-    for method in methods:
-        body = _integrated(method(surface, degree), polynomial, density, unit, where)
-        if method is exact_moments or body.volume > 0:
-            result = _result(body, amount, method is exact_moments)
-            if result is not None:
-                break
-    _require_volume(body, where)
+    work = len(surface.triangles) * len(exponents(degree))
+    result = None
+    if work > MOST_EXACT:
+        moments = approximate_moments(surface, degree)
+        _require_volume(moments, unit, where)
+        body = _integrated(moments, polynomial, density, unit, where)
+        result = _result(body, amount, exact=False)
+    if result is None:
+        if work > LARGEST_WORK:
+            raise InputError(
+                f"{where}: expected a mesh whose integrals reach an error of {float(LARGEST_ERROR):g}, got one whose "
+                f"terms cancel, with {len(surface.triangles)} triangles; reduce their number"
+            )
+        moments = exact_moments(surface, degree)
+        _require_volume(moments, unit, where)
+        body = _integrated(moments, polynomial, density, unit, where)
+        result = _result(body, amount, exact=True)
     checks = require_boundary(surface, where)
     if body.mass[0] <= 0:
         raise InputError(
@@ -229,11 +240,13 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
     return amount or mass, center, tensor, error
 
 
-def _require_volume(body: _Body, where: str) -> None:
-    if body.volume == 0:
+def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
+    """Raise InputError if the volume is zero or negative; a volume within the bound of its error passes."""
+    volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
+    if volume == 0 and error == 0:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")
-    if body.volume < 0:
+    if volume < -error:
         raise InputError(
             f"{where}: expected a mesh whose normals point outwards, got one that is turned inside out, with a volume "
-            f"of {float(body.volume):.6g} m^3; write flip = true"
+            f"of {float(volume * unit**3):.6g} m^3; write flip = true"
         )

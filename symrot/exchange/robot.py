@@ -50,11 +50,16 @@ class Link(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format of robot files: its name, the tag of a link, and the reader of a link's inertial."""
+    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial."""
 
     name: str
     tag: str
+    paths: tuple[str, ...]
     read: Callable[[Element, Element], Inertial]
+
+    def elements(self, root: Element) -> list[Element]:
+        """Return the elements of all links; elements of the same tag elsewhere, as in plugins, are no links."""
+        return [element for path in self.paths for element in root.findall(path)]
 
 
 def links(path: str | Path) -> tuple[Link, ...]:
@@ -144,7 +149,7 @@ def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
 
 
 def _links(form: Format, root: Element, where: str) -> list[Element]:
-    elements = [*root.iter(form.tag)]
+    elements = form.elements(root)
     if not elements:
         reason = "; files that it includes are not read" if root.find(".//include") is not None else ""
         raise InputError(f"{where}: expected a robot with links (<{form.tag}>), got none{reason}")
@@ -272,13 +277,17 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
 
 _CHANGING = {
     "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "boundmass": ("0",), "boundinertia": ("0",),
-    "settotalmass": ("-1",),
+    "settotalmass": ("-1",), "coordinate": ("local",),
 }  # fmt: skip
 """Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not."""
 
 
 def _read_mjcf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; MuJoCo then computes the inertia from geoms, which is not read")
+    if root.find(".//include") is not None:
+        raise InputError(
+            "expected a model in one file, got <include>, whose settings may change inertials; save it as one"
+        )
     settings: dict[str, str] = {}
     for compiler in root.iter("compiler"):
         settings |= compiler.attrib
@@ -315,8 +324,8 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
 
 
 FORMATS = {
-    "robot": Format("URDF", "link", _read_urdf),
-    "sdf": Format("SDF", "link", _read_sdf),
-    "mujoco": Format("MJCF", "body", _read_mjcf),
+    "robot": Format("URDF", "link", ("link",), _read_urdf),
+    "sdf": Format("SDF", "link", (".//model/link",), _read_sdf),
+    "mujoco": Format("MJCF", "body", ("worldbody//body",), _read_mjcf),
 }
 """Tag of the root element -> format."""

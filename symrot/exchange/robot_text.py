@@ -53,7 +53,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
     >>> symrot.write_link("robot.urdf", "upper_arm", symrot.mesh("arm.stl", mass=2), "new.urdf")  # doctest: +SKIP
     """
     form, root, content = read_robot(source)
-    same = [element for element in root.iter(form.tag) if element.get("name") == name]
+    same = [element for element in form.elements(root) if element.get("name") == name]
     if len(same) != 1:
         raise InputError(f"{source}: expected one link of the name {show(name)}, got {len(same) or 'none'}")
     if not _is_utf8(content):
@@ -74,7 +74,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
 def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, where: str) -> None:
     """Raise InputError unless the new text, read again, has the mass properties that were to be written."""
     root = ElementTree.fromstring(result)
-    element = next(element for element in root.iter(form.tag) if element.get("name") == name)
+    element = next(element for element in form.elements(root) if element.get("name") == name)
     try:
         again = form.read(element, root)
     except InputError as reason:

@@ -106,6 +106,20 @@ def test_a_thin_wall_whose_terms_cancel_is_computed_exactly():
     )
 
 
+def test_a_large_mesh_whose_terms_cancel_is_refused(monkeypatch):
+    from symrot.exchange import mesh
+
+    monkeypatch.setattr(mesh, "MOST_EXACT", 10)
+    monkeypatch.setattr(mesh, "LARGEST_WORK", 20)
+    outer = sphere(1)
+    wall = joined(outer, Surface(outer.vertices * (1 - 2.0**-36), outer.flipped().triangles))
+    with pytest.raises(InputError, match="got one whose terms cancel, with 64 triangles; reduce their number"):
+        body(wall, mass=1)
+    with pytest.raises(InputError, match=r"turned inside out, with a volume of -1 m\^3"):
+        body(box().flipped(), mass=1)
+    assert body(box(), mass=6).error > 0
+
+
 # --- laws -------------------------------------------------------------------------------------------------------------
 
 

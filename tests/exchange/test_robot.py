@@ -206,6 +206,8 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (MJCF.format(compiler='inertiafromgeom="true"', inertia='diaginertia="1 1 1"'), "compiler: expected inertiafromgeom = 'false', got 'true'"),
     (MJCF.format(compiler='balanceinertia="true"', inertia='diaginertia="1 1 1"'), "which changes inertials"),
     (MJCF.format(compiler='eulerseq="xyw"', inertia='diaginertia="1 1 1"'), "compiler.eulerseq: expected three axes"),
+    (MJCF.format(compiler='coordinate="global"', inertia='diaginertia="1 1 1"'), "expected coordinate = 'local', got 'global'"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 1"').replace("<worldbody>", '<include file="x"/><worldbody>'), "whose settings may change inertials"),
     (MJCF.format(compiler="", inertia=""), "expected one of diaginertia and fullinertia, got neither"),
     (MJCF.format(compiler="", inertia='fullinertia="1 1 1 0 0 0" quat="1 0 0 0"'), "none with fullinertia, got quat"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" quat="0 0 0 0"'), "expected a quaternion that is not zero"),
@@ -225,6 +227,22 @@ def test_without_a_name_a_file_has_one_link(tmp_path):
         symrot.link(robot(tmp_path, URDF.format(rpy="0 0 0")))
     with pytest.raises(InputError, match="link 'base': expected an element <inertial>, got none"):
         symrot.link(robot(tmp_path, URDF.format(rpy="0 0 0")), "base")
+
+
+def test_links_of_plugins_are_no_links(tmp_path):
+    text = URDF.format(rpy="0 0 0").replace(
+        '<link name="base"/>', '<gazebo><plugin><link name="arm"/></plugin></gazebo>'
+    )
+    path = robot(tmp_path, text)
+    assert symrot.link(path).name == "arm"
+    ball = Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    symrot.write_link(path, "arm", ball)
+    assert symrot.link(path, "arm").inertia == ball.inertia
+    empty = robot(tmp_path, '<robot><gazebo><link name="arm"/></gazebo><link name="arm"/></robot>')
+    before = empty.read_text()
+    with pytest.raises(InputError, match="link 'arm': expected an element <inertial>, got none"):
+        symrot.write_link(empty, "arm", ball)
+    assert empty.read_text() == before
 
 
 def test_a_folder_and_a_missing_file_are_refused(tmp_path):
