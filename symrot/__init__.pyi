@@ -44,6 +44,7 @@ from symrot.scene.samples import Table
 from symrot.scene.scene import Scene, load_scene, shipped_scenes
 from symrot.scene.tables import Initial, Output, Span
 from symrot.scene.torque import Torque
+from symrot.sweeps.sweep import Sweep, sweep
 from symrot.viewer.show import show
 from symrot.workshop.certification import (
     Audit,
@@ -116,6 +117,7 @@ __all__ = [
     "Stats",
     "Step",
     "Structure",
+    "Sweep",
     "SymrotError",
     "Table",
     "Torque",
@@ -159,6 +161,7 @@ __all__ = [
     "show",
     "singularity_dossier",
     "solid",
+    "sweep",
     "to_sympy",
     "write_link",
 ]

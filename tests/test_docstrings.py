@@ -192,6 +192,7 @@ OPTIONAL = {
     "mpl_toolkits",
     "PIL",
     "imageio_ffmpeg",
+    "tqdm",
     "heyoka",
     "symforce",
     "casadi",

@@ -17,6 +17,7 @@ from symrot.cli import certify as cli_certify
 from symrot.cli import exchange as cli_exchange
 from symrot.cli import exercises as cli_exercises
 from symrot.cli import scenes as cli_scenes
+from symrot.cli import sweeps as cli_sweeps
 from symrot.cli.output import (
     FAILED,
     INTERRUPTED,
@@ -29,7 +30,7 @@ from symrot.cli.output import (
     say,
     say_json,
 )
-from symrot.errors import InputError, PropagationError, SymrotError
+from symrot.errors import InputError, PropagationError, SymrotError, with_hint
 from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
@@ -485,6 +486,7 @@ def _doctor_arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "show": ("write a page that plays a scene and lets the reader change it", _show, _show_arguments),
+    **cli_sweeps.COMMANDS,
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
@@ -528,11 +530,21 @@ def _parser(only: str = "") -> _Parser:
 def _check_command(arguments: Sequence[str]) -> None:
     """Raise InputError for an unknown command; the message suggests the most similar command."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
-        from symrot.scene.reader import nearest
-
-        hint = nearest(arguments[0], COMMANDS)
         message = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
-        raise InputError(f"{message} ({hint})" if hint else message)
+        raise InputError(with_hint(message, arguments[0], COMMANDS))
+
+
+def _check_unknown(command: str, unknown: Sequence[str]) -> None:
+    """Raise InputError for the first word that a command does not know; it suggests the most similar option."""
+    if not unknown:
+        return
+    own = _Parser()
+    COMMANDS[command][2](own)
+    options = [option for action in own._actions for option in action.option_strings]
+    word = unknown[0].partition("=")[0]
+    kind = "an option" if word.startswith("-") else "no further word"
+    message = f"{command}: expected {kind} of `symrot {command} --help`, got {word[:60]!r}"
+    raise InputError(with_hint(message, word, options) if word.startswith("-") else message)
 
 
 def _silence(stream: Any) -> None:
@@ -565,7 +577,14 @@ def main(argv: Sequence[str] | None = None) -> int:
             _parser().print_help(sys.stderr)
             return USAGE_ERROR
         _check_command(arguments)
-        options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
+        command = arguments[0] if arguments[0] in COMMANDS else ""
+        parser = _parser(command)
+        if "_ARGCOMPLETE" in os.environ:  # the shell asks for words that may follow
+            from symrot.cli.completion import complete
+
+            complete(parser)
+        options, unknown = parser.parse_known_args(arguments)
+        _check_unknown(command, unknown)
         code: int = options.function(options)
         sys.stdout.flush()
         return code

@@ -23,7 +23,7 @@ from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import QUANTITIES, TOLERANCES
 
-__all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"]
+__all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble", "read_tolerance"]
 
 UNAVERAGED = ("quaternion", "dcm", "euler")  # attitudes: the mean of their components is no attitude
 
@@ -358,12 +358,12 @@ def propagate_ensemble(
     times = read_times(t, source, len(variation))
     if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
-    aim = own if tolerance is None else _tolerance(tolerance)
+    aim = own if tolerance is None else read_tolerance(tolerance)
     problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
     return Ensemble(problem, follow(problem, method), perf_counter() - began)
 
 
-def _tolerance(tolerance: float) -> float:
+def read_tolerance(tolerance: float) -> float:
     low, high = TOLERANCES
     value = number.read(tolerance, "tolerance")
     if not low <= value <= high:

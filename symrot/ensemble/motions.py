@@ -64,6 +64,12 @@ class Problem(NamedTuple):
     tolerance: float
     workers: int
 
+    def of(self, rows: Integers) -> "Problem":
+        """Return the problem of some of the motions, with the equations that their own constants need."""
+        variation = self.variation.of(rows)
+        times = self.times if self.times.ndim == 1 else self.times[rows]
+        return self._replace(variation=variation, plan=variation.plan(), times=times)
+
     def times_of(self, i: int) -> Floats:
         """Return the sample times of motion i, s, shape (m,)."""
         times: Floats = self.times if self.times.ndim == 1 else self.times[i]
@@ -79,18 +85,49 @@ def follow(problem: Problem, method: str) -> Followed:
         ``auto`` (closed form or Taylor series in SIMD lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
         ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
-    count = len(problem.variation)
     name = method.partition(":")[0]
     if method != "auto" and (name not in METHODS or name == "constant" or (":" in method and name != "scipy")):
         choose_method(problem.plan, method)  # raises an error that lists the methods
+    groups = problem.variation.patterns()
+    if len(groups) == 1:
+        return _follow(problem, method, groups[0])
+    return _together([_follow(problem.of(rows), method, rows) for rows in groups], groups)
+
+
+def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
+    """Return the motions of all groups in the order of the ensemble."""
+    order = np.argsort(np.concatenate(groups), kind="stable")
+
+    def joined(arrays: Sequence[Any]) -> Any:
+        return np.concatenate(arrays)[order]
+
+    def texts(rows: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+        flat = [text for row in rows for text in row]
+        return tuple(flat[place] for place in order.tolist())
+
+    quaternions = [part.quaternion for part in parts]  # a torque needs the attitude or not, whatever its constants
+    return Followed(
+        joined([part.omega for part in parts]),
+        None if any(each is None for each in quaternions) else joined(quaternions),
+        texts([part.methods for part in parts]),
+        texts([part.messages for part in parts]),
+        joined([part.steps for part in parts]),
+        joined([part.evaluations for part in parts]),
+    )
+
+
+def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
+    """Return the samples of motions that have the same equations; ``rows`` are their indices in the ensemble."""
+    count = len(problem.variation)
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
     for each in solved:
         by_steps[each.rows] = False
     stepped = np.flatnonzero(by_steps).tolist()
     if method == "exact" and stepped:
+        first = int(rows[stepped[0]])
         raise InputError(
-            f"method: expected motions with a closed form for 'exact', but trajectory {stepped[0]} of the scene "
+            f"method: expected motions with a closed form for 'exact', but trajectory {first} of the scene "
             f"{problem.variation.scene.name!r} has none; use 'auto'"
         )
     samples = problem.times.shape[-1]

@@ -1,6 +1,6 @@
 """Values of the parameters of kernels for each trajectory of an ensemble; constant ones are evaluated once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -67,9 +67,11 @@ class Numbers:
                 values[:, k] = self._each(folded(node, fixed), names(node))
         return values
 
-    def _each(self, node: tuple[object, ...], used: set[str]) -> list[float]:
-        columns: Mapping[str, list[float]] = {
-            name: column.tolist() for name, column in self._columns.items() if name in used
-        }
-        rows = zip(*columns.values(), strict=True)
-        return [float(value_of(node, dict(zip(columns, map(Fraction, row), strict=True)))) for row in rows]
+    def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
+        """Return the value of a formula for each trajectory; rows of equal constants are computed once."""
+        columns = {name: column for name, column in self._columns.items() if name in used}
+        table = np.stack(list(columns.values()), axis=1)
+        rows, places = np.unique(table, axis=0, return_inverse=True)
+        exact = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
+        values: Floats = np.array([float(value_of(node, constants)) for constants in exact])[places.ravel()]
+        return values

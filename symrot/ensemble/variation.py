@@ -8,11 +8,12 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import combinations
 from typing import Any, NamedTuple
 from weakref import finalize
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, Structure, component_names
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
@@ -27,7 +28,7 @@ from symrot.propagation.steppers.stepping import Floats
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
-__all__ = ["PLACES", "Variation", "read_times", "read_variation"]
+__all__ = ["FIXED", "PLACES", "Place", "Variation", "constant_places", "read_times", "read_variation"]
 
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
@@ -52,7 +53,7 @@ DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # different moments that sat
 _caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their ids, deleted with the scene
 
 
-class _Place(NamedTuple):
+class Place(NamedTuple):
     """Where a scene contains a constant: in the inertia tensor, or in a field of a torque."""
 
     torque: int  # -1: the inertia
@@ -71,10 +72,16 @@ class Variation:
     omega: Floats  # (n, 3), rad/s, body components
     quaternion: Floats | None  # (n, 4), of any norm but zero; None: the scene's own
     columns: dict[str, Floats]  # (n,) each
-    places: dict[str, _Place]
+    places: dict[str, Place]
 
     def __len__(self) -> int:
         return len(self.omega)
+
+    def of(self, rows: NDArray[np.intp]) -> "Variation":
+        """Return the variation of some of the trajectories."""
+        quaternion = None if self.quaternion is None else self.quaternion[rows]
+        columns = {name: column[rows] for name, column in self.columns.items()}
+        return replace(self, omega=self.omega[rows], quaternion=quaternion, columns=columns)
 
     def scene_of(self, i: int) -> Scene:
         """Return the scene of trajectory i; values from the arrays of the variation become exact fractions."""
@@ -197,8 +204,26 @@ class Variation:
         plan: Plan = self.cached(("plan", *moments, *zeros), lambda: self._planned(values))
         return plan
 
+    def patterns(self) -> list[NDArray[np.intp]]:
+        """Return groups of trajectories, as row indices in order, for each of which :meth:`plan` is the same.
+
+        The group of a trajectory, and therefore its plan, depends only on its own constants: on which of them are zero,
+        and on which moments of inertia are equal.
+        """
+        bits = [column != 0 for column in self.columns.values()]
+        if not PLACES.keys().isdisjoint(self.columns):
+            moments = [self.constant(name) for name in PRINCIPAL]
+            bits += [np.asarray(_equal(one, other)) for one, other in combinations(moments, 2)]
+        if not bits:
+            return [np.arange(len(self))]
+        table = np.stack(np.broadcast_arrays(*bits, np.zeros(len(self), dtype=bool)), axis=1)
+        if (table == table[0]).all():
+            return [np.arange(len(self))]
+        _, group = np.unique(table, axis=0, return_inverse=True)
+        return [np.flatnonzero(group.ravel() == k) for k in range(int(group.max()) + 1)]
+
     @property
-    def _varied(self) -> list[_Place]:
+    def _varied(self) -> list[Place]:
         return [self.places[name] for name in self.columns]
 
     def _planned(self, values: Mapping[str, Fraction]) -> Plan:
@@ -227,6 +252,14 @@ class Variation:
             return number.equal(*own)
         left, right = (self.columns.get(name, float(value)) for name, value in zip((one, other), own, strict=True))
         return bool(np.all(left == right))
+
+
+def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
+    """Return whether two constants are equal, for each trajectory or, if neither varies, for all."""
+    if isinstance(one, Fraction) and isinstance(other, Fraction):
+        return number.equal(one, other)
+    left, right = (float(value) if isinstance(value, Fraction) else value for value in (one, other))
+    return left == right
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
@@ -269,7 +302,7 @@ def read_variation(
         if quaternion is not None:
             raise InputError("attitude: expected attitude or quaternion, got both")
         quaternion = _quaternions(attitude)
-    places = _places(scene)
+    places = constant_places(scene)
     arrays: dict[str, Floats] = {}
     if omega is not None:
         arrays["omega"] = _array(omega, (3,), "omega", "rad/s")
@@ -362,21 +395,21 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
     return array + 0.0  # -0.0 becomes 0.0, since exact numbers have no sign of zero
 
 
-def _places(scene: Scene) -> dict[str, _Place]:
+def constant_places(scene: Scene) -> dict[str, Place]:
     """Return, for each constant that may vary in a scene, its place there, by the name of the constant in the plan."""
-    places = {name: _Place(-1, "inertia", None) for name in PLACES}
+    places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
-            places |= {f"{torque.prefix}{name}": _Place(index, "parameters", name) for name in torque.parameters}
+            places |= {f"{torque.prefix}{name}": Place(index, "parameters", name) for name in torque.parameters}
             continue
         for field, pattern in torque.fields:
             entries = [None] if isinstance(pattern, Pattern) else range(len(pattern))
             names = component_names(f"{torque.prefix}{field}", pattern)
-            places |= {name: _Place(index, field, entry) for name, entry in zip(names, entries, strict=True)}
+            places |= {name: Place(index, field, entry) for name, entry in zip(names, entries, strict=True)}
     return places
 
 
-def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:
+def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLike) -> dict[str, Floats]:
     """Return the columns of values that one entry of ``parameters`` describes, by the name of the constant."""
     if name == "principal":
         if not scene.body.principal.given_axes:
@@ -411,6 +444,6 @@ def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLi
     return dict(zip(chosen, rows.T, strict=True))
 
 
-def _field(key: str, place: _Place) -> str:
+def _field(key: str, place: Place) -> str:
     """Return the name that ``parameters`` accepts for the whole field of the constant ``key``."""
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import ORIENTATIONS, Angles, of_quaternion, of_roll_pitch_yaw
 from symrot.exchange.xml_file import read_xml
-from symrot.formula.advice import nearest
 from symrot.formula.exact_numbers import show
 from symrot.inertia.principal import principal_axes, require_admissible
 from symrot.inertia.tensor import IDENTITY, Tensor, matrix, rotate
@@ -124,9 +123,8 @@ def link(path: str | Path, name: str = "") -> Inertial:
         raise InputError(f"{path}: expected the name of one of its links, {_listed(names)}, got none")
     same = [element for element in elements if not name or element.get("name") == name]
     if not same:
-        close = nearest(str(name)[:80], names)
-        hint = f" (did you mean {close!r}?)" if close else ""
-        raise InputError(f"{path}: expected one of its links, {_listed(names)}, got {show(name)}{hint}")
+        message = f"{path}: expected one of its links, {_listed(names)}, got {show(name)}"
+        raise InputError(with_hint(message, name, names))
     if len(same) > 1:
         raise InputError(f"{path}: expected one link of the name {show(name)}, got {len(same)}")
     result = _link(form, root, same[0])

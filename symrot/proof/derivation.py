@@ -162,6 +162,7 @@ class Derivation(PrintedPage):
         display: Any = None,
         source: str = "",
         via: Sequence[tuple[str, Any, Any]] = (),
+        board: Sequence[tuple[str, str]] = (),
     ) -> Step:
         """Prove ``left = right`` and add it as a step; return the step.
 
@@ -183,6 +184,10 @@ class Derivation(PrintedPage):
             Book and page, if the step is printed elsewhere.
         via : sequence of (str, Expr, Expr)
             Intermediate equations (words, left, right), proven too, for the page that shows the step in detail.
+        board : sequence of (str, str)
+            The proof as a teacher writes it on the board: reasons and LaTeX of expressions that lead from the left side
+            to the right one. Each is parsed and proven equal to the left side; the page in detail shows them instead of
+            components.
 
         Raises
         ------
@@ -203,9 +208,15 @@ class Derivation(PrintedPage):
             self._is_read_back(claim, named or None, left, sides, relations),
             self._is_read_back(claim, display, right, sides, relations),
         )
+        for _, text in board:
+            if not self._is_read_back(claim, text, left, sides, relations):
+                raise ProofError(f"{self.name}, {claim!r}: expected LaTeX on the board that can be read, got {text}")
         return self._add(
-            Step(claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed)
-        )
+            Step(
+                claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed,
+                tuple(board),
+            )
+        )  # fmt: skip
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
         """Prove ``expression > 0`` from the signs of the symbols in it, and add it as a step; return the step.

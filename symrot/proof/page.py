@@ -54,6 +54,9 @@ class Step:
         Book and page, if the step is printed elsewhere.
     via : tuple of (str, Expr, Expr)
         Proven intermediate equations (words, left, right), for the page that shows the step in detail.
+    board : tuple of (str, str)
+        The proof as a teacher writes it on the board: reasons, and expressions in LaTeX that lead from the left side to
+        the right one. Each was parsed and proven equal to the left side.
     printed : (bool, bool)
         For each side: True if the page displays the proven expression itself, or a form that was parsed and proven
         equal to the expression; False if the page displays a name or words instead.
@@ -77,6 +80,7 @@ class Step:
     source: str = ""
     via: tuple[tuple[str, Any, Any], ...] = ()
     printed: tuple[bool, bool] = (True, True)
+    board: tuple[tuple[str, str], ...] = ()
 
     def __repr__(self) -> str:
         return f"<Step: {self.claim}>"
@@ -148,6 +152,12 @@ class Page:
         Headings, passages, steps and figures, in order.
     first : int
         The number of the first step; not 1 on a page with a part of a derivation.
+    opening : list
+        What stands above the paragraph about the subject: paragraphs and figures.
+    closing : list
+        What stands below the steps and the units: headings and paragraphs.
+    beyond : int
+        How many of the steps a course can leave out, because only the library needs them.
     file : str
         The path of the catalogue file, relative to the folder of symrot; empty for a page outside the catalogue.
     """
@@ -159,6 +169,16 @@ class Page:
     items: list[Section | Passage | Step | Figure] = field(default_factory=list)
     first: int = 1
     file: str = ""
+    opening: list[Passage | Figure] = field(default_factory=list)
+    closing: list[Section | Passage] = field(default_factory=list)
+    beyond: int = 0
+
+    @property
+    def extent(self) -> str:
+        """The number of steps in words, for a table of contents."""
+        count = len(self.steps)
+        words = f"{count} {'step' if count == 1 else 'steps'}"
+        return f"{words}, {self.beyond} of them for the library only" if self.beyond else words
 
     @property
     def steps(self) -> tuple[Step, ...]:

@@ -12,6 +12,7 @@ from symrot.catalogue import READING_ORDER, derivation, names
 from symrot.errors import InputError
 from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
+from symrot.lessons.page import taught
 from symrot.proof.derivation import PrintedPage
 from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages import book, math_font
@@ -27,6 +28,9 @@ ABOUT = (
     "page was printed: the exact normal form of left minus right is zero."
 )
 
+FEW_FIGURES = 3
+"""A page with no more figures opens with the first of them, also if it belongs to a section."""
+
 CONVERTER = "rsvg-convert"
 """The program that converts SVG to PDF for LaTeX; without it, LaTeX prints the caption of a figure alone."""
 
@@ -39,7 +43,10 @@ def _quiet(text: str) -> None:
 
 
 def illustrated(page: Page) -> PrintedPage:
-    """Return a page with its figures, each at the top of the page or below the heading of its section.
+    """Return a page with its figures and its lesson.
+
+    A figure is at the top of the page or below the heading of its section. A page with few figures has at least one at
+    the top.
 
     Raises
     ------
@@ -50,13 +57,18 @@ def illustrated(page: Page) -> PrintedPage:
     --------
     >>> import symrot
     >>> page = illustrated(symrot.derivation("poinsot"))
-    >>> [item.name for item in page.items if isinstance(item, Figure)][0]
+    >>> [item.name for item in page.opening if isinstance(item, Figure)][0]
     'poinsot'
     """
+    figures = figures_of(page.name)
     by_section: dict[str, list[Figure]] = {}
-    for figure in figures_of(page.name):
+    for figure in figures:
         by_section.setdefault(figure.section, []).append(figure)
-    items: list[Section | Passage | Step | Figure] = [*by_section.pop("", ())]
+    top = by_section.pop("", [])
+    if not top and 0 < len(figures) <= FEW_FIGURES:
+        top = [figures[0]]
+        by_section[figures[0].section].remove(figures[0])
+    items: list[Section | Passage | Step | Figure] = []
     for item in page.items:
         items.append(item)
         if isinstance(item, Section):
@@ -64,7 +76,8 @@ def illustrated(page: Page) -> PrintedPage:
     if by_section:
         raise InputError(f"{page.name}: expected figures in sections of the page, got the sections {[*by_section]}")
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
-    return PrintedPage(**values | {"items": items})
+    lesson = taught(Page(**values | {"items": items}), top)
+    return PrintedPage(**{each.name: getattr(lesson, each.name) for each in fields(Page)})
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
@@ -83,14 +96,14 @@ def pages(say: Say = _quiet) -> dict[str, str]:
     ]
     for part, members in READING_ORDER.items():
         lines += ["", f"## {part}", ""]
-        lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
+        lines += [f"- [{derived[name].title}]({name}.md), {derived[name].extent}" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
     texts = {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
     return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}
 
 
 def _figures(page: Page) -> list[Figure]:
-    return [item for item in page.items if isinstance(item, Figure)]
+    return [item for item in [*page.opening, *page.items] if isinstance(item, Figure)]
 
 
 def write_pages(directory: Path | str, form: str) -> list[Path]:

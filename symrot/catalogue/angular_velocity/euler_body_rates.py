@@ -30,7 +30,8 @@ def derive() -> Derivation:
     )
     d.passage(
         r"The angles $q = (\phi, \theta, \psi)$ are in order of application. Upper case sequences are intrinsic, about "
-        r"axes of the body; lower case ones are extrinsic, about axes of space."
+        r"axes of the body; lower case ones are extrinsic, about axes of space. The argument is the same for every "
+        "sequence: the first one has the reasons, and for the others the formulas follow in the same order."
     )
     for sequence in SEQUENCES:
         _sequence(d, sequence)

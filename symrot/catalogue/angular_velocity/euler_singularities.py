@@ -25,7 +25,8 @@ def derive() -> Derivation:
             r"q$, "
             "the axes of the first and the last turn are one line: one combination of their angles turns nothing, one "
             "axis is out of reach, and on the way there the rates grow like the inverse of the distance. All twelve "
-            "sequences are looked at, at each of their singular angles."
+            "sequences are looked at, at each of their singular angles. The argument is the same for all: the first "
+            "one has the reasons, and for the others the formulas follow in the same order."
         ),
     )
     for sequence in INTRINSIC_SEQUENCES:

@@ -62,7 +62,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         "The acceleration, with its components along the axes of the body.",
         dcm_sb.T * (rate(velocity, body) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)),
-        because="the velocity is differentiated once more",
+        because=r"the product rule is applied again, and each vector that rotates adds $\omega$ times it",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
@@ -71,7 +71,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         "Its second part points to the axis through $P$, and is $|\\omega|^2$ times the distance from it.",
         OMEGA.cross(OMEGA.cross(D)),
         OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
-        because="the double cross product is expanded",
+        because=r"$a \times (b \times c) = b\,(a \cdot c) - c\,(a \cdot b)$",
         named=r"\omega_b \times (\omega_b \times d)",
         display=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
     )

@@ -114,7 +114,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "The angular velocity in the body, from the rate of the matrix.",
         dcm_rate,
         dcm_sb * skew(body * rates),
-        because=r"all nine entries of the two matrices are equal",
+        because="the rate of the matrix by the chain rule agrees with its product with the skew matrix",
         named=r"\dot R",
         display=rf"R\,[B_b\,\dot {form.letter}]_\times",
     )
@@ -130,7 +130,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "The angular velocity in space.",
         dcm_rate,
         skew(space * rates) * dcm_sb,
-        because="all nine entries of the two matrices are equal",
+        because="the rate of the matrix by the chain rule agrees with its product with the skew matrix",
         named=r"\dot R",
         display=rf"[B_s\,\dot {form.letter}]_\times R",
     )
@@ -148,7 +148,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         "They are the angular velocity times a matrix.",
         body.inverse,
         form.inverse[0],
-        because="the terms of the inverse are collected",
+        because="the inverse is a sum of the unit matrix, a skew matrix and the outer product of the parameters",
         named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}",
         display=form.inverse[1],
     )

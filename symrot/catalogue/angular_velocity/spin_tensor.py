@@ -42,7 +42,7 @@ def _skewness(d: Derivation) -> None:
         r"The symmetric part of $W$ is a rate. Where $R R^{\mathsf T} = 1$ stays so, it is zero: $W$ is skew.",
         spin + spin.T,
         rate(MATRIX * MATRIX.T, moving),
-        because="the product rule of differentiation is applied",
+        because="the product rule gives one term from each factor",
         named=r"W + W^{\mathsf T}",
         display=r"\frac{d}{dt} \left( R R^{\mathsf T} \right)",
     )
@@ -132,7 +132,7 @@ def _points(d: Derivation) -> None:
         "The rate of any vector, seen from space and seen from the body.",
         dcm_sb.T * rate(dcm_sb * point, motion | pairs(symbols.offset, moving)),
         moving + OMEGA.cross(point),
-        because="the product rule of differentiation is applied",
+        because="the product rule gives one term from each factor",
         relations=unit,
         named=r"R^{\mathsf T} \frac{d}{dt}\,(R\,d)",
         display=r"\dot d + \omega_b \times d",

@@ -84,7 +84,7 @@ def _product(d: Derivation) -> None:
         "Its axis.",
         Matrix(product[1:]),
         vector,
-        because="the vector part of the product of quaternions is compared",
+        because="the vector part of a product holds each vector times the other's scalar part, and their cross product",
         named=r"\text{axis}\;\sin \tfrac{\text{angle}}{2}",
         display=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
         r" + \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k",

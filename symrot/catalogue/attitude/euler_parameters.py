@@ -46,7 +46,7 @@ def _precession(d: Derivation) -> None:
                 cos(THETA / 2) * sin(total),
             ]
         ),
-        because="the formulas for sines and cosines of sums are applied",
+        because="products of sines and cosines of the outer half angles combine into those of their sum and difference",
         named=r"\begin{bmatrix} q_0 \\ q_1 \\ q_2 \\ q_3 \end{bmatrix}",
     )
     d.step(
@@ -93,7 +93,8 @@ def _precession(d: Derivation) -> None:
 def _all(d: Derivation) -> None:
     d.section("All sequences")
     d.passage(
-        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles."
+        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles. "
+        "The reason is the same for all and stands at the first."
     )
     for sequence in INTRINSIC_SEQUENCES:
         q = quaternion_of_euler(sequence)

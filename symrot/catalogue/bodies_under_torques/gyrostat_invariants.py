@@ -27,6 +27,7 @@ def derive() -> Derivation:
     momentum_b = TENSOR * OMEGA + ROTOR
     dcm_sb = Matrix(quaternion_to_dcm())
     domega = Matrix(symbols.omega_rates)
+    d.notation({"I": TENSOR, "h": ROTOR, r"\omega_b": OMEGA, r"\dot\omega_b": domega, "R": dcm_sb, r"\tau_b": TORQUE})
     d.passage("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
     d.step(
         "Its rate in space, along the axes of the body.",
@@ -36,6 +37,13 @@ def derive() -> Derivation:
         relations=[unit_relation()],
         named=r"R^{\mathsf T} \dot L_s",
         display=r"I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
+        board=(
+            (
+                r"The product rule, with $\dot R = R\,[\omega_b]_\times$ and constant $I$ and $h$:",
+                r"R^{\mathsf T} \left( R \left( \omega_b \times (I\,\omega_b + h) \right) + R\,I\,\dot\omega_b \right)",
+            ),
+            (r"$R^{\mathsf T} R = 1$:", r"\omega_b \times (I\,\omega_b + h) + I\,\dot\omega_b"),
+        ),
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE, ROTOR)
     d.step(
@@ -43,12 +51,20 @@ def derive() -> Derivation:
         TENSOR * acceleration + OMEGA.cross(momentum_b),
         TORQUE,
         because="the inertia tensor has an inverse",
+        board=(
+            (
+                "The angular acceleration is put in; the inertia tensor and its inverse cancel:",
+                r"\left( \tau_b - \omega_b \times (I\,\omega_b + h) \right) + \omega_b \times (I\,\omega_b + h)",
+            ),
+            ("The gyroscopic terms cancel:", r"\tau_b"),
+        ),
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times (I\,\omega_b + h) \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
         display=r"\tau_b",
     )
     d.section("Without torque")
     free = attitude_rates() | pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR))
+    d.notation({r"\dot\omega_b": angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR)})
     d.step(
         "The total angular momentum in space is kept.",
         rate(dcm_sb * momentum_b, free),
@@ -56,6 +72,13 @@ def derive() -> Derivation:
         because="there is no torque",
         relations=[unit_relation()],
         named=r"\frac{d}{dt}\,R\,(I\,\omega_b + h)",
+        board=(
+            (
+                r"The product rule, with $\dot R = R\,[\omega_b]_\times$ and constant $I$ and $h$:",
+                r"R \left( \omega_b \times (I\,\omega_b + h) \right) + R\,I\,\dot\omega_b",
+            ),
+            ("The equation of motion without torque says that the two terms cancel:", "0"),
+        ),
     )
     d.step(
         "So is its length.",

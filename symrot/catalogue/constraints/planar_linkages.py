@@ -57,7 +57,7 @@ def _slider(d: Derivation) -> None:
         "The velocity of the slider.",
         velocity,
         -CRANK * sin(PHI + PSI) / cos(PSI) * DPHI,
-        because="the rate of the rod is substituted",
+        because="the slider moves by crank and rod together, and step 1 gives the rate of the rod",
         named=r"\dot x",
     )
     ends = {PHI: 0, PSI: 0}
@@ -73,7 +73,7 @@ def _slider(d: Derivation) -> None:
         "The acceleration at the far dead centre, with the crank turning steadily.",
         rate(velocity, steady).subs(ends),
         -CRANK * DPHI**2 * (1 + CRANK / ROD),
-        because="the velocity is differentiated once more",
+        because="the velocity is differentiated; at the dead centre the terms with its sine are zero",
         named=r"\ddot x|_{\phi = \psi = 0}",
     )
     pin, slider = _bar(CRANK, PHI), Matrix([place, 0])
@@ -135,7 +135,7 @@ def _four_bars(d: Derivation) -> None:
         rate(freudenstein, {PHI: DPHI, PSI: DPSI}),
         2 * a * DPHI * (ground * sin(PHI) + c * sin(PHI - PSI))
         - 2 * c * DPSI * (ground * sin(PSI) + a * sin(PHI - PSI)),
-        because="the chain rule is applied",
+        because="the lengths are constant, so that only the rates of crank and rocker remain",
         named=r"\frac{d}{dt} \left( |c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2 \right)",
     )
     square = {b: ground, c: a, THETA: 0, PSI: PHI}

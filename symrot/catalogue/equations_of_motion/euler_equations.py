@@ -32,7 +32,10 @@ def derive() -> Derivation:
     )
     momentum_b = TENSOR * OMEGA
     motion = attitude_rates() | pairs(symbols.omega_b, DOMEGA)
-    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA, "L_s": dcm_sb * momentum_b}, motion)
+    d.notation(
+        {"R": dcm_sb, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA, "L_s": dcm_sb * momentum_b, r"\tau_b": TORQUE},
+        motion,
+    )
     moving = TENSOR * DOMEGA + OMEGA.cross(momentum_b)
     d.step(
         "The rate of angular momentum in space, with its components along the axes of the body.",
@@ -41,6 +44,13 @@ def derive() -> Derivation:
         because=r"the axes of the body rotate with $\dot R = R\,[\omega_b]_\times$",
         relations=unit,
         named=r"R^{\mathsf T} \dot L_s",
+        board=(
+            (
+                r"The product rule, with $L_s = R\,I\,\omega_b$ and a constant tensor:",
+                r"R^{\mathsf T} \left( R\,\left( \omega_b \times I\,\omega_b \right) + R\,I\,\dot\omega_b \right)",
+            ),
+            (r"$R^{\mathsf T} R = 1$:", r"\omega_b \times I\,\omega_b + I\,\dot\omega_b"),
+        ),
         display=r"I\,\dot\omega_b + \omega_b \times I\,\omega_b",
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE)
@@ -49,6 +59,13 @@ def derive() -> Derivation:
         moving.subs(pairs(symbols.omega_rates, acceleration)),
         TORQUE,
         because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the inertia tensor has an inverse",
+        board=(
+            (
+                "The angular acceleration is put in; the inertia tensor and its inverse cancel:",
+                r"\left( \tau_b - \omega_b \times I\,\omega_b \right) + \omega_b \times I\,\omega_b",
+            ),
+            ("The gyroscopic terms cancel:", r"\tau_b"),
+        ),
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times I\,\omega_b \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times I\,\omega_b",
         display=r"\tau_b",
@@ -83,12 +100,20 @@ def derive() -> Derivation:
         named=r"\dot\omega_b",
     )
     d.section("Power")
-    d.notation({"I": TENSOR}, pairs(symbols.omega_b, acceleration))
+    d.notation({"I": TENSOR, r"\dot\omega_b": acceleration}, pairs(symbols.omega_b, acceleration))
     d.step(
         "The gyroscopic term does no work: the torque alone changes the kinetic energy.",
         rate(OMEGA.dot(momentum_b) / 2, pairs(symbols.omega_b, acceleration)),
         OMEGA.dot(TORQUE),
         because=r"$\omega \cdot (\omega \times I\,\omega) = 0$, and the tensor is symmetric",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+        board=(
+            (
+                "The tensor is symmetric, so the two terms of the product rule are equal:",
+                r"\omega_b \cdot I\,\dot\omega_b",
+            ),
+            ("Euler's equations:", r"\omega_b \cdot \left( \tau_b - \omega_b \times I\,\omega_b \right)"),
+            ("A cross product is perpendicular to its factors:", r"\omega_b \cdot \tau_b"),
+        ),
     )
     return d

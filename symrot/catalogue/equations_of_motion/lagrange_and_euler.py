@@ -41,7 +41,7 @@ def _transposition(d: Derivation) -> None:
     d.passage(
         r"Let $\mu$ be any vector of constant components in the body. The product $\mu \cdot \omega = \mu \cdot B "
         r"\dot q$ is "
-        "put into Lagrange's operator, for every sequence:",
+        "put into Lagrange's operator, for every sequence; the reason is the same for all and stands at the first:",
         (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
     )
     for sequence in INTRINSIC_SEQUENCES:
@@ -74,7 +74,7 @@ def _equations(d: Derivation) -> None:
         "Lagrange's operator on the kinetic energy, full tensor.",
         lagrange(omega.dot(TENSOR * omega) / 2),
         body.T * (TENSOR * rate(omega, MOTION) + omega.cross(TENSOR * omega)),
-        because="both sides are expanded in angles, rates and accelerations",
+        because="both sides are written out in angles, rates and accelerations, and all their terms agree",
         named=r"E \left[ \tfrac12\,\omega \cdot I\,\omega \right]",
         display=r"B^{\mathsf T} \left( I\,\dot\omega + \omega \times I\,\omega \right)",
     )

@@ -48,7 +48,7 @@ def _definition(d: Derivation) -> None:
         "Two sums of squares are constant, hence what they are at the start: 1.",
         Matrix([rate(CN**2 + SN**2, derivatives()), rate(DN**2 + MU * SN**2, derivatives())]),
         0,
-        because="the derivatives of the terms cancel",
+        because="the derivative of each function is a multiple of the other two, and the two terms cancel",
         named=r"\frac{d}{du} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
@@ -76,7 +76,8 @@ def _sums(d: Derivation) -> None:
             claim,
             rate(left, along),
             right,
-            because="the quotient is differentiated, and the squares of cn and dn are replaced",
+            because=r"after the quotient rule, $\mathrm{cn}^2 = 1 - \mathrm{sn}^2$ and "
+            r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$ remove the squares of cn and dn",
             relations=BOTH,
             named=rf"\frac{{d}}{{du}}\,{name}",
             display=value,

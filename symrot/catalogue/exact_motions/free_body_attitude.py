@@ -122,7 +122,7 @@ def _two_turns(d: Derivation) -> None:
         "In terms of the third component alone: a constant, and a part that depends on it.",
         turning_rate(),
         H / C + (2 * T - H**2 / C) / (H + L3),
-        because="the polynomial division of the fraction is carried out",
+        because=r"$\omega_3 = L_3 / C$, and the part $\frac{H}{C} (H + L_3)$ of the numerator is divided off",
         named=r"\dot\psi",
     )
     d.notation({r"\dot\psi": speed})

@@ -89,7 +89,7 @@ def _holds(
         claim,
         rate(Matrix([s, c, speed]), along),
         Matrix([half * speed * c, -half * speed * s, -2 * P**2 * s * c]),
-        because="each derivative is substituted",
+        because="the derivatives of these functions are known, and the chain rule adds the rate of their argument",
         relations=hypotheses,
         named=r"\begin{bmatrix} \dot s \\ \dot c \\ \ddot\theta \end{bmatrix}",
         display=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",

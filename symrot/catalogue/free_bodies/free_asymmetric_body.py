@@ -56,7 +56,7 @@ def _functions(d: Derivation) -> None:
         "Two sums of squares are constant, and 1 at the start:",
         Matrix([rate(CN**2 + SN**2, rates), rate(DN**2 + MU * SN**2, rates)]),
         0,
-        because="the derivatives of the terms cancel",
+        because="the derivative of each function is a multiple of the other two, and the two terms cancel",
         named=r"\frac{d}{dt} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
@@ -209,7 +209,7 @@ def _attitude(d: Derivation) -> None:
         "The nutation swings unless two moments are equal.",
         rates[1],
         h * (1 / A - 1 / B) * sin(theta) * sin(psi) * cos(psi),
-        because="the second row of the rates is written out",
+        because=r"$\dot\theta$ is the component along the line of nodes, $\omega_1 \cos\psi - \omega_2 \sin\psi$",
         named=r"\dot\theta",
     )
 

@@ -25,6 +25,9 @@ def derive() -> Derivation:
     acceleration = angular_acceleration(TENSOR, OMEGA, NONE)
     motion = attitude_rates() | pairs(symbols.omega_b, acceleration)
     momentum_b = TENSOR * OMEGA
+    d.notation(
+        {"I": TENSOR, r"\omega_b": OMEGA, r"\dot\omega_b": acceleration, "R": Matrix(quaternion_to_dcm())}, motion
+    )
     d.passage(
         r"Euler's equations without torque, full tensor:", (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b")
     )
@@ -34,6 +37,14 @@ def derive() -> Derivation:
         0,
         because=r"the gyroscopic torque is perpendicular to $\omega$",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+        board=(
+            (
+                "The tensor is symmetric, so the two terms of the product rule are equal:",
+                r"\omega_b \cdot I\,\dot\omega_b",
+            ),
+            ("Euler's equations:", r"-\omega_b \cdot \left( \omega_b \times I\,\omega_b \right)"),
+            (r"A cross product is perpendicular to its factors:", "0"),
+        ),
     )
     d.step(
         "All three components of angular momentum in space are kept.",
@@ -42,6 +53,13 @@ def derive() -> Derivation:
         because="there is no torque, and Euler's equations state this in rotating axes",
         relations=[unit_relation()],
         named=r"\frac{d}{dt}\,R\,I\,\omega_b",
+        board=(
+            (
+                r"The product rule, with $\dot R = R\,[\omega_b]_\times$:",
+                r"R \left( \omega_b \times I\,\omega_b \right) + R\,I\,\dot\omega_b",
+            ),
+            ("Euler's equations say that the two terms cancel:", "0"),
+        ),
     )
     d.step(
         "So is its length, which needs no attitude.",
@@ -49,6 +67,14 @@ def derive() -> Derivation:
         0,
         because="a rotation preserves lengths",
         named=r"\frac{d}{dt}\,|I\,\omega_b|^2",
+        board=(
+            ("The product rule:", r"2\,I\,\omega_b \cdot I\,\dot\omega_b"),
+            (
+                "Euler's equations:",
+                r"-2\,I\,\omega_b \cdot \left( \omega_b \times I\,\omega_b \right)",
+            ),
+            ("A cross product is perpendicular to its factors:", "0"),
+        ),
     )
     d.section("The polhode")
     a, b, c = symbols.principal

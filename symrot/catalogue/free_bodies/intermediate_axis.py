@@ -43,7 +43,8 @@ def derive() -> Derivation:
             r"$\ddot x = \lambda^2 x$.",
             linear**2,
             diag(squared_rate, squared_rate),
-            because="Euler's equations, linear in the disturbance, applied twice",
+            because="to first order each of the two disturbances drives the other, so that the equations, "
+            "applied twice, give each of them back, times a constant",
             named=r"\left( \partial \dot\omega / \partial \omega \right)^2 = \lambda^2\,\mathbf{1}, \quad \lambda^2",
             display=squared_rate,
         )
@@ -57,7 +58,9 @@ def derive() -> Derivation:
         d.positive(
             f"{sentence[0].upper()}{sentence[1:]}.",
             sign * growth[number].subs(ordered),
-            because="both differences have the same sign" if sign > 0 else "the differences have opposite signs",
+            because="the moment lies between the other two, so that both differences have the same sign"
+            if sign > 0
+            else "the moment is the largest or the smallest, so that the two differences have opposite signs",
             named=r"\lambda^2" if sign > 0 else r"-\lambda^2",
         )
     d.passage(

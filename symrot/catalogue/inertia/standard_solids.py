@@ -99,7 +99,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
             "Of the first and second moments these vanish.",
             Matrix([moments[axes] for axes in zero]),
             0,
-            because="the integral of each term is zero",
+            because="each of these integrals, done like the following ones, is zero",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip

@@ -29,7 +29,7 @@ LARGE = {"sum": "∑", "prod": "∏", "int": "∫"}
 FUNCTIONS = {
     "sin", "cos", "tan", "cot", "sec", "csc", "det", "dim", "lim", "log", "exp", "max", "min", "sinh", "cosh", "tanh",
     "ln", "arctan",
-    "arcsin", "arg",
+    "arcsin", "arccos", "arg",
 }  # fmt: skip
 SPACES = {",": 0.17, ":": 0.22, ";": 0.28, "!": -0.17, " ": 0.28, "quad": 1.0, "qquad": 2.0}
 ACCENTS = {"dot": "˙", "ddot": "¨", "bar": "¯", "overline": "¯", "hat": "^", "vec": "→", "tilde": "~"}

@@ -97,15 +97,10 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
     parts = [f"<h1>{prose(title)}</h1>", f"<p>{prose(about)}</p>", form]
     number = 1
     for chapter, pages in chapters.items():
-        links = (f'<li><a href="{page.name}.html">{prose(page.title)}</a>, {_steps(page)}</li>' for page in pages)
+        links = (f'<li><a href="{page.name}.html">{prose(page.title)}</a>, {page.extent}</li>' for page in pages)
         parts += [f"<h2>{prose(chapter)}</h2>", f'<ol start="{number}">', *links, "</ol>"]
         number += len(pages)
     return document(title, [*parts, f'<script src="{SEARCH}"></script>'], face(FILE) + STYLE)
-
-
-def _steps(page: Page) -> str:
-    count = len(page.steps)
-    return f"{count} {'step' if count == 1 else 'steps'}"
 
 
 def _turning(before: Page | None, after: Page | None) -> str:
@@ -127,6 +122,11 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
     """Yield the place of each text of a page (after ``#``), its title, and the text, as Markdown."""
     yield "", page.title, page.about
+    for opening in page.opening:
+        if isinstance(opening, Figure):
+            yield "", f"{page.title}, figure", f"{opening.title}. {opening.caption}"
+        else:
+            yield "", page.title, opening.text
     number, sections = page.first - 1, 0
     heading = page.title
     for item in page.items:
@@ -141,6 +141,11 @@ def _words(page: Page) -> Iterator[tuple[str, str, str]]:
             yield "", f"{heading}, figure", f"{item.title}. {item.caption}"
         elif isinstance(item, Passage):
             yield f"#section-{sections}" if sections else "", heading, item.text
+    for closing in page.closing:
+        if isinstance(closing, Section):
+            heading = f"{page.title}: {closing.title}"
+        else:
+            yield "", heading, closing.text
 
 
 def _plain(text: str) -> str:

@@ -5,12 +5,21 @@ from sympy import MatrixBase, factor
 from symrot.errors import InputError
 from symrot.exact import normal_form
 from symrot.exact.rewriting_chain import Chain, Link, chains
+from symrot.proof.notation.mathml import rows
 from symrot.proof.notation.printer import formula
 from symrot.proof.page import Page, Passage, Section, Step
+from symrot.proof.pages.parts import passage_equations
 
 __all__ = ["excerpt"]
 
 LONGEST_IN_TEXT = 100  # letters of LaTeX
+LINES = 36  # of a page in detail: a screen
+LINE = 62  # letters on a line of a formula
+LETTERS = 5000  # of LaTeX on a screen
+LEFT_OUT = (
+    "does not fit on a screen and is left out: both sides are multiplied out in components, like terms are collected, "
+    "and the two normal forms are the same."
+)
 
 
 def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
@@ -37,8 +46,42 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
     headings = [item for item in whole.items[:place] if isinstance(item, Section)]
     page.items += [*headings[-1:], step]
     if detail:
-        page.items += [Section("In detail"), *(_detail(step) if step.relation == "=" else _signs(step))]
+        page.items += [Section("In detail"), *_in_detail(step)]
     return page
+
+
+def _in_detail(step: Step) -> list[Passage]:
+    if step.board:
+        return _on_board(step)
+    return _on_one_screen(_detail(step) if step.relation == "=" else _signs(step))
+
+
+def _on_board(step: Step) -> list[Passage]:
+    """Return the proof that a teacher writes on the board: a chain of expressions with their reasons."""
+    left = step.named or formula(step.left)
+    passages = []
+    for words, text in step.board:
+        passages.append(Passage(words, ((left, text),)))
+        left = ""
+    return passages
+
+
+def _on_one_screen(passages: list[Passage]) -> list[Passage]:
+    """Return the first paragraphs, as many as fit on a screen, and a sentence that says what is left out."""
+    screen: list[Passage] = []
+    lines = letters = 0
+    for passage in passages:
+        texts = list(passage_equations(passage))
+        letters += sum(map(len, texts))
+        if letters > LETTERS:
+            break
+        lines += 2 + sum(len(rows(text, LINE)) + 2 for text in texts)
+        if lines > LINES:
+            break
+        screen.append(passage)
+    if len(screen) < len(passages):
+        screen.append(Passage(f"{'The rest' if screen else 'The calculation'} {LEFT_OUT}"))
+    return screen
 
 
 def _signs(step: Step) -> list[Passage]:

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
-from symrot.proof.page import Figure, Page, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages.math_font import face
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["display", "document", "html_document", "prose"]
 
@@ -36,7 +36,7 @@ figure { margin: 1.6rem 0; text-align: center; break-inside: avoid; }
 figure svg { max-width: 100%; height: auto; }
 figcaption { font-size: 0.95rem; text-align: left; margin-top: 0.4rem; }
 .whole { white-space: nowrap; }
-code { font-size: 0.9em; }
+code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
 a { color: inherit; }
 @media print { .display { overflow: visible; } .step { break-inside: avoid; } }
@@ -49,12 +49,14 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
     It is self-contained unless ``font`` is the address of the mathematical font.
     """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
+    for opening in page.opening:
+        parts += [_figure(opening)] if isinstance(opening, Figure) else _passage(opening)
     if page.about:
         parts.append(f"<p>{prose(page.about)}</p>")
     if page.source:
         parts.append(f'<p class="source"><em>Source:</em> {prose(page.source)}.</p>')
     parts += _contents(page)
-    number, section = page.first - 1, 0
+    number, section, repeats = page.first - 1, 0, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             section += 1
@@ -64,19 +66,32 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
             parts.append(
                 f'<section class="step" id="step-{number}">\n'
                 f'<p><span class="number">{number}.</span>{prose(item.claim)}</p>\n'
-                f"{display(equation(item))}\n"
-                f'<p class="remarks">{prose(" ".join(remarks(item)))}</p>\n</section>'
+                f"{display(equation(item))}\n{_remarks(item, number in repeats)}</section>"
             )
         elif isinstance(item, Figure):
-            parts.append(f"<figure>{item.svg()}<figcaption>{prose(item.caption)}</figcaption></figure>")
+            parts.append(_figure(item))
         else:
-            parts.append(f"<p>{prose(item.text)}</p>")
-            parts += [display(text) for text in passage_equations(item)]
+            parts += _passage(item)
     used = units(page)
     if used:
         parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(prose(used))}.</p>")
+    for closing in page.closing:
+        parts += [f"<h2>{prose(closing.title)}</h2>"] if isinstance(closing, Section) else _passage(closing)
     parts.append(f"<footer>{prose(footer(page))}</footer>")
     return document(page.title, [*parts, *filter(None, [bottom])], face(font) + style)
+
+
+def _remarks(step: Step, is_repetition: bool) -> str:
+    text = prose(" ".join(remarks(step, is_repetition)))
+    return f'<p class="remarks">{text}</p>\n' if text else ""
+
+
+def _figure(figure: Figure) -> str:
+    return f"<figure>{figure.svg()}<figcaption>{prose(figure.caption)}</figcaption></figure>"
+
+
+def _passage(passage: Passage) -> list[str]:
+    return [f"<p>{prose(passage.text)}</p>", *map(display, passage_equations(passage))]
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:

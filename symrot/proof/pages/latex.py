@@ -3,8 +3,8 @@
 import re
 
 from symrot.proof.notation.mathml import rows
-from symrot.proof.page import Figure, Page, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["latex_document"]
 
@@ -29,11 +29,12 @@ LATEX_HEAD = r"""\documentclass[a4paper]{article}
 def latex_document(page: Page) -> str:
     """Return a page as a LaTeX document."""
     parts = [LATEX_HEAD + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
+    parts += [_figure(item) if isinstance(item, Figure) else _passage(item) for item in page.opening]
     if page.about:
         parts.append(_prose(page.about))
     if page.source:
         parts.append(rf"\emph{{Source:}} {_prose(page.source)}.")
-    number = page.first - 1
+    number, repeats = page.first - 1, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             parts.append(rf"\section*{{{_prose(item.title)}}}")
@@ -41,15 +42,18 @@ def latex_document(page: Page) -> str:
             number += 1
             parts.append(
                 rf"\paragraph{{{number}.}} {_prose(item.claim)}" + f"\n{_display(equation(item))}\n"
-                + _prose(" ".join(remarks(item)))
+                + _prose(" ".join(remarks(item, number in repeats)))
             )  # fmt: skip
         elif isinstance(item, Figure):
             parts.append(_figure(item))
         else:
-            parts.append("\n".join([_prose(item.text), *map(_display, passage_equations(item))]))
+            parts.append(_passage(item))
     used = units(page)
     if used:
         parts.append(rf"\paragraph{{Units}} of the symbols in the proofs: {_prose(used)}.")
+    parts += [
+        rf"\section*{{{_prose(item.title)}}}" if isinstance(item, Section) else _passage(item) for item in page.closing
+    ]
     parts += [r"\medskip\hrule\medskip", _prose(footer(page)), r"\end{document}"]
     return "\n\n".join(parts) + "\n"
 
@@ -59,6 +63,10 @@ def _figure(figure: Figure) -> str:
     path = figure.file.removesuffix(".svg")
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
+
+
+def _passage(passage: Passage) -> str:
+    return "\n".join([_prose(passage.text), *map(_display, passage_equations(passage))])
 
 
 def _display(latex: str) -> str:

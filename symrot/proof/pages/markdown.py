@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from symrot.proof.page import Figure, Page, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
 
 __all__ = ["display", "host_safe", "inline", "markdown"]
 
@@ -14,28 +14,40 @@ MANY_SECTIONS = 8
 def markdown(page: Page) -> str:
     """Return a page as Markdown; display formulas are between ``$$`` on separate lines."""
     parts = [f"# {page.title}"]
+    for opening in page.opening:
+        parts += _figure(opening) if isinstance(opening, Figure) else _passage(opening)
     if page.about:
         parts.append(page.about)
     if page.source:
         parts.append(f"*Source:* {page.source}.")
     parts += _contents(page)
-    number = page.first - 1
+    number, repeats = page.first - 1, repetitions(page)
     for item in page.items:
         if isinstance(item, Section):
             parts.append(f"## {item.title}")
         elif isinstance(item, Step):
             number += 1
-            parts += [f"**{number}.** {item.claim}", display(equation(item)), " ".join(remarks(item))]
+            parts += [f"**{number}.** {item.claim}", display(equation(item))]
+            parts += filter(None, [" ".join(remarks(item, number in repeats))])
         elif isinstance(item, Figure):
-            parts += [f"![{item.title}]({item.file})", f"*Figure:* {item.caption}"]
+            parts += _figure(item)
         else:
-            parts.append(item.text)
-            parts += [display(text) for text in passage_equations(item)]
+            parts += _passage(item)
     symbols_used = units(page)
     if symbols_used:
         parts.append(f"**Units** of the symbols in the proofs: {symbols_used}.")
+    for closing in page.closing:
+        parts += [f"## {closing.title}"] if isinstance(closing, Section) else _passage(closing)
     parts += ["---", footer(page)]
     return "\n\n".join(map(host_safe, parts)) + "\n"
+
+
+def _figure(figure: Figure) -> list[str]:
+    return [f"![{figure.title}]({figure.file})", f"*Figure:* {figure.caption}"]
+
+
+def _passage(passage: Passage) -> list[str]:
+    return [passage.text, *(display(text) for text in passage_equations(passage))]
 
 
 MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")

@@ -1,5 +1,6 @@
 """Parts of a page that all formats share: equations, the remarks below them, units, and the footer."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -9,7 +10,10 @@ from symrot.proof.notation.printer import formula
 from symrot.proof.page import Page, Passage, Step
 from symrot.symbols import UNIT
 
-__all__ = ["equation", "footer", "passage_equations", "remarks", "units"]
+__all__ = ["equation", "footer", "passage_equations", "remarks", "repetitions", "units"]
+
+MANY = 6
+"""So many steps with one claim and one reason prove one result for many cases."""
 
 
 def equation(step: Step) -> str:
@@ -18,9 +22,26 @@ def equation(step: Step) -> str:
     return f"{left} = {right} > 0" if step.relation == ">" else f"{left} = {right}"
 
 
-def remarks(step: Step) -> Iterator[str]:
-    """Yield the remarks on a step, each a sentence: its reason, its hypotheses, its conditions and its source."""
-    yield f"*Why:* {step.reason}."
+def repetitions(page: Page) -> frozenset[int]:
+    """Return the numbers of the steps whose reason an earlier step of the page gives for the same claim.
+
+    A page that proves one result for many sequences of angles, or many solids, argues once: :data:`MANY` steps have the
+    same reason and the same claim, but for formulas and names of sequences, and only the first prints the reason.
+    """
+    places: dict[tuple[str, str], list[int]] = {}
+    for number, step in enumerate(page.steps, page.first):
+        claim = re.sub(r"\$[^$]*\$|\b[XYZ]{3}\b", "", step.claim)
+        places.setdefault((claim, step.reason), []).append(number)
+    return frozenset(number for numbers in places.values() if len(numbers) >= MANY for number in numbers[1:])
+
+
+def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
+    """Yield the remarks on a step, each a sentence: its reason, its hypotheses, its conditions and its source.
+
+    A repetition has no reason.
+    """
+    if not is_repetition:
+        yield f"*Why:* {step.reason}."
     if step.hypotheses:
         yield f"*Given:* {_list(map(_hypothesis, step.hypotheses))}."
     if step.conditions:

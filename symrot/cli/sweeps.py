@@ -1,0 +1,160 @@
+"""The command ``symrot sweep``: its arguments, its progress bar and its summary."""
+
+import re
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import symrot
+from symrot.cli.output import INTERRUPTED, OK, Command, json_option, progress, say, say_json
+from symrot.cli.scenes import load, scene_options
+from symrot.errors import InputError
+
+__all__ = ["COMMANDS"]
+
+_VARY = re.compile(r"\s*([^~=\s]+)\s*([~=])\s*(.+)", re.DOTALL)
+_TIMES = "'linspace(0, 10, 11)' or 'values(0, 1, 5)'"
+
+
+def _vary(texts: list[str]) -> dict[str, Any]:
+    """Return the law of each name in texts such as ``omega_1 ~ normal(0, 0.1)``."""
+    from symrot.sweeps.laws import Distribution, read_law
+
+    laws: dict[str, Any] = {}
+    for text in texts:
+        match = _VARY.fullmatch(text)
+        if match is None:
+            raise InputError(
+                f"--vary: expected 'NAME ~ DISTRIBUTION' or 'NAME = GRID', such as 'omega_1 ~ normal(0, 0.1)' or "
+                f"'weight = linspace(1, 2, 50)', got {text[:100]!r}"
+            )
+        name, sign, law_text = match.groups()
+        if name in laws:
+            raise InputError(f"--vary: expected each name once, got {name} a second time")
+        law = laws[name] = read_law(law_text, f"--vary {name}")
+        if isinstance(law, Distribution) != (sign == "~"):
+            better = "~" if sign == "=" else "="
+            raise InputError(
+                f"--vary: expected ~ before a distribution and = before a grid, got {text[:100]!r}; "
+                f"write '{name} {better} {law_text.strip()[:80]}'"
+            )
+    return laws
+
+
+def _times(text: str | None) -> Any:
+    from symrot.sweeps.laws import Grid, read_law
+
+    if text is None:
+        return None
+    law = read_law(text, "--times")
+    if not isinstance(law, Grid):
+        raise InputError(f"--times: expected a grid of times in s, {_TIMES}, got {text[:100]!r}")
+    return law.values
+
+
+@contextmanager
+def _bar() -> Iterator[Callable[[int, int], None]]:
+    """Show complete trajectories, their rate and the time left, by tqdm if it is installed, otherwise as one line."""
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        yield lambda done, total: progress(f"{done} of {total} trajectories ..")
+        progress("")
+        return
+    tqdm.monitor_interval = 0  # no thread beside the processes of the sweep
+    bar: Any = None
+
+    def show(done: int, total: int) -> None:
+        nonlocal bar
+        if bar is None:
+            bar = tqdm(total=total, initial=done, unit=" trajectories", unit_scale=True, disable=None, leave=False)
+        else:
+            bar.update(done - bar.n)
+
+    try:
+        yield show
+    finally:
+        if bar is not None:
+            bar.close()
+
+
+def _sweep(options: Namespace) -> int:
+    if options.out is None:
+        raise InputError("sweep: expected the file to write, -o FILE.zarr or -o FILE.parquet")
+    vary, times, scene = _vary(options.vary), _times(options.times), load(options)
+    try:
+        with _bar() as show:
+            result = symrot.sweep(
+                scene, vary, attitudes=options.attitudes, sampling=options.sampling, count=options.count,
+                seed=options.seed, outputs=options.output or ["omega@end"], t=times, statistics=options.statistics,
+                keep=options.keep, path=options.out, method=options.method, tolerance=options.tolerance,
+                workers=options.workers, scheduler=options.scheduler, chunk=options.chunk,
+                table_folders=options.table_folder, progress=show, note=progress,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        progress("")
+        sys.stderr.write(
+            f"symrot: interrupted; complete chunks are in {options.out}, run the same command again to go on\n"
+        )
+        return INTERRUPTED
+    except OSError as reason:  # such as a full disk
+        raise InputError(
+            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to "
+            "go on"
+        ) from None
+    progress("")
+    facts = {
+        "written": str(result.path),
+        "trajectories": result.count,
+        "complete": result.count - result.stopped - result.impossible,
+        "stopped": result.stopped,
+        "impossible": result.impossible,
+        "reasons": [{"trajectory": row, "reason": reason} for row, reason in result.reasons],
+    }
+    if options.json:
+        say_json(facts)
+        return OK
+    say([f"{result.path}: {facts['complete']} of {result.count} trajectories complete"])
+    if result.stopped or result.impossible:
+        say([f"  {result.stopped} stopped early, {result.impossible} have values that no motion can have, for example"])
+        say(f"  trajectory {row}: {reason}" for row, reason in result.reasons)
+    opened = "xarray.open_zarr" if options.out.suffix.lower() == ".zarr" else "pandas.read_parquet"
+    say([f"  open it with {opened}({str(result.path)!r})"])
+    return OK
+
+
+def _arguments(parser: ArgumentParser) -> None:
+    scene_options(parser)
+    parser.add_argument("--vary", metavar="'NAME ~ LAW'", action="append", default=[],
+                        help="'omega_1 ~ normal(0, 0.1)', also uniform and loguniform; or a grid, 'weight = "
+                        "linspace(1, 2, 50)', also geomspace and values; NAME may be a number in the scene file, "
+                        "such as body.mass; may be repeated")  # fmt: skip
+    parser.add_argument("--attitudes", metavar="WORD", default="scene", help="uniform: draw initial attitudes")
+    parser.add_argument("--sampling", metavar="WORD", default="random", help="random, latin or sobol (default: random)")
+    parser.add_argument("--count", metavar="N", help="number of trajectories (default: of the points of all grids)")
+    parser.add_argument("--seed", metavar="N", default=0, help="seed of the draws (default: 0)")
+    parser.add_argument("--output", metavar="NAME", action="append", default=[],
+                        help="energy, omega_1@end, axis_z@2.5, omega_3@max ..; may be repeated "
+                        "(default: omega@end)")  # fmt: skip
+    parser.add_argument("--times", metavar="GRID", help=f"sample times in s, {_TIMES.replace('%', '%%')} "
+                        "(default: the scene's own)")  # fmt: skip
+    parser.add_argument("--statistics", metavar="NAME", action="append", default=[],
+                        help="mean, envelope, 'percentiles(5, 50, 95)' or 'histogram(BINS)' of each output; "
+                        "may be repeated")  # fmt: skip
+    parser.add_argument("--keep", metavar="WORD", default="all", help="statistics: remove single values at the end")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write FILE.zarr or FILE.parquet")
+    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--tolerance", metavar="X", help="error to aim for (default: the scene's own)")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (default: one per core)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead, tcp://host:8786")
+    parser.add_argument("--chunk", type=int, metavar="N", help="trajectories in a chunk; does not change the results")
+    json_option(parser)
+
+
+COMMANDS: dict[str, Command] = {
+    "sweep": ("propagate many motions of a scene by a design of varied values", _sweep, _arguments),
+}
+"""The command with its help text, the function that runs it, and the function that declares its arguments."""

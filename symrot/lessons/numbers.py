@@ -1,0 +1,119 @@
+"""The section "With numbers" of a page: formulas of its steps, with the numbers of a scene."""
+
+import re
+from collections.abc import Iterator
+from functools import cache
+
+from sympy import Expr, MatrixBase
+
+from symrot.catalogue import derivation
+from symrot.errors import InputError
+from symrot.exercises.sheet import exercise
+from symrot.exercises.units import unit_latex
+from symrot.lessons.lesson import Lesson, Number
+from symrot.lessons.scene_values import scene_values
+from symrot.proof.notation.printer import formula
+from symrot.proof.page import Page, Passage, Section, Step
+from symrot.scene.scene import load_scene
+from symrot.symbols import UNIT
+
+__all__ = ["numbers_of", "value_of"]
+
+DIGITS = 4
+PRECISION = 50  # digits; the scene's own numbers, such as quaternions, have 60
+NOTHING = 1e-30  # a number below it is zero but for rounding
+LONGEST = 300  # letters of LaTeX of a formula that is printed again beside its number
+
+
+def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
+    """Yield the paragraphs of the section: numbers of the scene, or an exercise that is worked."""
+    if lesson.numbers:
+        yield from _of_scene(page, lesson)
+    else:
+        yield from _of_exercise(lesson)
+
+
+def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
+    """Return the formula of a number in symbols of the scene, and its value.
+
+    Raises
+    ------
+    InputError
+        If the page has no such step, or the scene gives no value for a symbol of the formula.
+
+    Examples
+    --------
+    >>> number = Number("Energy:", "T", "Along principal axes", "J")
+    >>> value_of(derivation("kinetic_energy"), number, "tumbling_prism")[0]
+    A*omega_1**2/2 + B*omega_2**2/2 + C*omega_3**2/2
+    """
+    step = _step(derivation(number.page) if number.page else page, number)
+    side = step.right if step.display is None or isinstance(step.display, str) else step.display.doit()
+    if isinstance(side, MatrixBase):
+        if number.entry is None:
+            raise InputError(f"{page.name}, {number.words!r}: expected the number of an entry of a matrix, got none")
+        side = side[number.entry]
+    expression = number.scale * side.subs(number.where, simultaneous=True) ** number.power
+    value = expression.subs(_floats(scene), simultaneous=True).evalf(PRECISION)
+    if value.free_symbols or not value.is_real:
+        names = ", ".join(sorted(symbol.name for symbol in value.free_symbols)) or f"the formula, got {value}"
+        raise InputError(f"{page.name}, {number.words!r}: expected a real number of the scene {scene} for {names}")
+    return expression, value
+
+
+@cache
+def _floats(scene: str) -> dict[Expr, Expr]:
+    """Return the numbers of a scene, rounded to :data:`PRECISION` digits."""
+    return {symbol: value.evalf(PRECISION) for symbol, value in scene_values(load_scene(scene)).items()}
+
+
+def _step(page: Page, number: Number) -> Step:
+    section = ""
+    for item in page.items:
+        if isinstance(item, Section):
+            section = item.title
+        elif isinstance(item, Step) and item.claim.startswith(number.step) and number.section in ("", section):
+            return item
+    raise InputError(f"{page.name}, {number.words!r}: expected a step whose claim begins with {number.step!r}")
+
+
+def _of_scene(page: Page, lesson: Lesson) -> Iterator[Passage]:
+    scene = load_scene(lesson.scene)
+    values = _floats(lesson.scene)
+    results = [(number, *value_of(page, number, lesson.scene)) for number in lesson.numbers]
+    used = {symbol for _, expression, _ in results for symbol in expression.free_symbols}
+    symbols = [symbol for symbol in UNIT if symbol in used and symbol in values]
+    listed = ", ".join(f"${formula(symbol)} = {_quantity(values[symbol], UNIT[symbol])}$" for symbol in symbols)
+    title = scene.title.replace(":", ",")
+    yield Passage(f"The scene `{lesson.scene}` ({title}) has {listed}.")
+    for number, expression, value in results:
+        text = formula(expression)
+        is_news = expression.free_symbols and _bare(text) != _bare(number.name)
+        middle = f"{text} = " if is_news and len(text) <= LONGEST else ""
+        yield Passage(number.words, ((number.name, f"{middle}{_quantity(value, number.unit)}"),))
+
+
+def _bare(latex: str) -> str:
+    """Return LaTeX without braces and blanks, to compare two ways to write one formula."""
+    return re.sub(r"[{} ]|\\,", "", latex)
+
+
+def _quantity(value: Expr, unit: str) -> str:
+    """Return a number with its unit as LaTeX, rounded to :data:`DIGITS` digits."""
+    number = float(value)
+    text = "0" if abs(number) < NOTHING else f"{number:.{DIGITS}g}"
+    if "e" in text:
+        digits, exponent = text.split("e")
+        text = rf"{digits} \cdot 10^{{{int(exponent)}}}"
+    return text + unit_latex("" if unit == "1" else unit)
+
+
+def _of_exercise(lesson: Lesson) -> Iterator[Passage]:
+    """Yield an exercise with its solution, each line of which was proven when it was made."""
+    problem = exercise(lesson.worked)[0]
+    quantities = ", ".join(f"${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in problem.data)
+    asked = " ".join(question.prompt for question in problem.questions if question.kind == "number")
+    yield Passage(f"{problem.statement} Let {quantities}. {asked}" if quantities else f"{problem.statement} {asked}")
+    for line in problem.solution:
+        left, _, right = line.latex.partition(" = ")
+        yield Passage(line.reason, ((left, right),))

@@ -1,0 +1,205 @@
+"""One chunk of a sweep: the trajectories of a range of indices, from their draws to their outputs.
+
+The outputs of a trajectory depend only on the job and on the index of the trajectory: its draw does, and its equations
+are chosen by its own constants (:meth:`symrot.ensemble.variation.Variation.patterns`). A trajectory that cannot be
+computed has NaN as outputs, a status and a reason; the others are not affected.
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.ensemble.ensemble import propagate_ensemble
+from symrot.ensemble.variation import read_variation
+from symrot.errors import InputError, PropagationError
+from symrot.scene.scene import Scene
+from symrot.sweeps.design import Design, Draws
+from symrot.sweeps.outputs import SweepOutput, evaluate, sample_times
+from symrot.sweeps.targets import OMEGA, Content, Path, constants_of
+
+__all__ = ["COMPLETE", "IMPOSSIBLE", "STOPPED", "Chunk", "Job", "compute", "prepared"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+COMPLETE, STOPPED, IMPOSSIBLE = 0, -1, -2
+"""Status of a trajectory: it reached its last time; it stopped early; no body or motion has its values."""
+
+MOST_READINGS = 4096  # scenes of distinct values that a process remembers
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """The work of a sweep: a design, the scene that it varies, and the outputs with their times and accuracy."""
+
+    design: Design
+    scene: Scene
+    content: Content | None
+    times: Floats  # (m,), s
+    outputs: tuple[SweepOutput, ...]
+    method: str
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """The results of the trajectories ``start`` to ``stop``."""
+
+    start: int
+    stop: int
+    draws: Draws
+    outputs: dict[str, Floats]  # (n, m) or (n,) by name
+    status: NDArray[np.int8]  # (n,)
+    messages: dict[int, str]  # reason by row, for each trajectory that is not complete
+
+
+@dataclass
+class _Inputs:
+    """The arguments of an ensemble: initial states and columns of constants, one row for each trajectory."""
+
+    omega: Floats
+    attitudes: Floats | None
+    parameters: dict[str, Floats]
+
+    def of(self, rows: Rows) -> dict[str, Any]:
+        attitudes = None if self.attitudes is None else self.attitudes[rows]
+        parameters = {name: column[rows] for name, column in self.parameters.items()}
+        return {"omega": self.omega[rows], "quaternion": attitudes, "parameters": parameters}
+
+
+def compute(job: Job, start: int, stop: int) -> Chunk:
+    """Return the results of the trajectories ``start`` to ``stop`` of a sweep."""
+    draws, n = job.design.draws(start, stop), stop - start
+    samples = sample_times(job.outputs, job.times)
+    shapes = {output.name: (n, len(job.times)) if output.is_series else (n,) for output in job.outputs}
+    outputs = {name: np.full(shape, np.nan) for name, shape in shapes.items()}
+    status, messages = np.full(n, IMPOSSIBLE, dtype=np.int8), dict[int, str]()
+    inputs, rows = _inputs(job, draws, messages)
+    rows = _possible(job.scene, inputs, rows, messages)
+    if len(rows):
+        variation = read_variation(job.scene, **inputs.of(rows))
+        for group in variation.patterns():
+            _propagate(job, inputs, rows[group], samples, outputs, status, messages)
+    return Chunk(start, stop, draws, outputs, status, messages)
+
+
+def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
+    """Return the arguments of the ensemble, and the rows whose scenes can be read."""
+    n, scene = len(draws.values), job.scene
+    inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
+    rows = np.arange(n)
+    paths = {axis.target.path: k for k, axis in enumerate(job.design.axes) if axis.target.path}
+    if paths:
+        rows = _read_scenes(job, draws, paths, inputs, messages)
+    for k, axis in enumerate(job.design.axes):
+        name = axis.target.name
+        if name in OMEGA:
+            inputs.omega[:, OMEGA.index(name)] = draws.values[:, k]
+        elif not axis.target.path:
+            inputs.parameters[name] = draws.values[:, k]
+    return inputs, rows
+
+
+def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
+    """Write the constants of the scenes with the values at some paths into the inputs; return the rows with a scene."""
+    assert job.content is not None
+    constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})
+    n, moved = len(draws.values), any(path[0] == "initial" for path in paths)
+    inputs.parameters |= {name: np.ones(n) for name in constants}
+    if moved and draws.attitudes is None:
+        inputs.attitudes = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    reader = _reader(job, tuple(paths), tuple(constants))
+    rows = []
+    for row, values in enumerate(draws.values[:, list(paths.values())].tolist()):
+        outcome = reader(tuple(values))
+        if isinstance(outcome, str):
+            messages[row] = outcome
+            continue
+        rows.append(row)
+        for name, value in zip(constants, outcome[0], strict=True):
+            inputs.parameters[name][row] = value
+        if moved:
+            inputs.omega[row] = outcome[1]
+        if moved and draws.attitudes is None and inputs.attitudes is not None:
+            inputs.attitudes[row] = outcome[2]
+    return np.array(rows, dtype=np.intp)
+
+
+Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quaternion
+
+
+@lru_cache(maxsize=2)
+def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
+    """Return the function from values at some paths to the constants of the scene, or to the reason why it has none."""
+    names = {axis.target.path: axis.target.name for axis in job.design.axes}
+
+    @lru_cache(maxsize=MOST_READINGS)
+    def read(values: tuple[float, ...]) -> Reading | str:
+        changes = {names[path]: value for path, value in zip(paths, values, strict=True)}
+        try:
+            scene = job.scene.with_(changes)
+            variation = read_variation(scene, None, None, None)
+            numbers = [float(variation.constant(name)) for name in constants]
+        except InputError as error:
+            return str(error)
+        start = scene.initial
+        return numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion]
+
+    return read
+
+
+def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str]) -> Rows:
+    """Return the rows whose values an ensemble accepts; for each other row, record the reason.
+
+    The rows are halved until the rows that cannot be used are alone.
+    """
+    if not len(rows):
+        return rows
+    try:
+        read_variation(scene, **inputs.of(rows))
+    except InputError as error:
+        if len(rows) == 1:
+            messages[int(rows[0])] = _alone(error)
+            return rows[:0]
+        half = len(rows) // 2
+        return np.concatenate([_possible(scene, inputs, part, messages) for part in (rows[:half], rows[half:])])
+    return rows
+
+
+def _alone(error: Exception) -> str:
+    """Return the message of an error about the only trajectory of an ensemble, without its index there."""
+    return str(error).replace(", trajectory 0", "").replace(" in trajectory 0", "").replace("parameters: ", "")
+
+
+def _propagate(
+    job: Job, inputs: _Inputs, rows: Rows, samples: Floats, outputs: dict[str, Floats], status: NDArray[np.int8],
+    messages: dict[int, str],
+) -> None:  # fmt: skip
+    """Write the outputs of some rows, which have the same equations of motion, into the arrays."""
+    try:
+        ensemble = propagate_ensemble(
+            job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance
+        )
+        values = evaluate(job.outputs, ensemble, job.times, samples)
+    except (InputError, PropagationError, ArithmeticError) as error:
+        if len(rows) == 1:
+            messages[int(rows[0])] = _alone(error)
+            return
+        for part in np.array_split(rows, 2):
+            _propagate(job, inputs, part, samples, outputs, status, messages)
+        return
+    for name, value in values.items():
+        outputs[name][rows] = value
+    status[rows] = np.where(ensemble.status == 0, COMPLETE, STOPPED)
+    for place in np.flatnonzero(ensemble.status).tolist():
+        messages[int(rows[place])] = ensemble.messages[place]
+
+
+def prepared(job: Job) -> Job:
+    """Return the job with a scene whose kernels compute the attitude if an output needs it."""
+    quantities = tuple(dict.fromkeys(output.quantity for output in job.outputs))
+    output = job.scene.output._replace(quantities=quantities)
+    return replace(job, scene=replace(job.scene, output=output))

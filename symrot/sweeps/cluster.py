@@ -1,0 +1,73 @@
+"""Chunks of a sweep by the workers of a Dask cluster; their results come to this process, which alone writes them."""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from symrot.errors import InputError, PropagationError
+from symrot.sweeps.chunk import Chunk, Job
+from symrot.sweeps.optional import optional
+from symrot.sweeps.processes import IN_FLIGHT, Range, compute_packed, packed
+
+__all__ = ["run_on_cluster"]
+
+SECONDS = 30  # longest wait for the scheduler and for its first worker
+RETRIES = 3
+
+
+def _client(address: str) -> Any:
+    make = optional("distributed", "--scheduler", "cluster").Client
+    try:
+        client = make(address, timeout=SECONDS, set_as_default=False)
+    except (OSError, ValueError, TypeError) as reason:
+        raise InputError(
+            f"--scheduler: expected the address of a Dask scheduler that answers within {SECONDS} s, such as "
+            f"tcp://host:8786, got {address!r} ({str(reason).partition(chr(10))[0][:200]})"
+        ) from None
+    try:
+        client.wait_for_workers(1, timeout=SECONDS)
+    except Exception:
+        client.close()
+        raise InputError(
+            f"--scheduler: expected a Dask cluster with a worker, but {address} has none after {SECONDS} s"
+        ) from None
+    return client
+
+
+def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
+    """Yield the chunks of a job in the order in which they are complete, computed by the workers of a Dask cluster.
+
+    Dask computes the chunks of a lost worker elsewhere. At most two chunks for each thread of the cluster are under
+    way.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed, or if no scheduler with a worker answers at the address.
+    PropagationError
+        If the cluster fails to compute a chunk.
+    """
+    client = _client(address)
+    in_order = optional("distributed", "--scheduler", "cluster").as_completed
+    try:
+        text, missing = packed(job), deque(ranges)
+        threads = sum(client.nthreads().values()) or 1
+
+        def submit() -> Any:
+            return client.submit(compute_packed, text, *missing.popleft(), pure=False, retries=RETRIES)
+
+        running = in_order([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
+        for future in running:
+            try:
+                chunk: Chunk = future.result()
+            except Exception as reason:
+                raise PropagationError(
+                    f"the cluster did not compute a chunk ({type(reason).__name__}: "
+                    f"{str(reason).partition(chr(10))[0][:300]}); run the sweep again to go on"
+                ) from None
+            future.release()
+            if missing:
+                running.add(submit())
+            yield chunk
+    finally:
+        client.close()

@@ -1,0 +1,172 @@
+"""The layout of the results of a sweep: its arrays with their dimensions and units, and what identifies the sweep."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.sweeps.chunk import Chunk, Job
+
+__all__ = [
+    "COMPONENT", "LABELS", "MESSAGE", "NOT_COMPUTED", "STATUS", "TIME", "TRAJECTORY", "Header", "Store", "Table",
+    "Variable", "arrays_of", "difference", "header_of", "messages_of",
+]  # fmt: skip
+
+TRAJECTORY, TIME = "trajectory", "time"
+COMPONENT = ("component", ("q0", "q1", "q2", "q3"))
+STATUS, MESSAGE, ATTITUDE = "status", "message", "input_quaternion"
+NOT_COMPUTED = -128
+"""Status of a trajectory whose chunk has not been computed yet."""
+LABELS = {
+    STATUS: {"long_name": "0 complete, -1 stopped early, -2 no motion has these values, -128 not computed yet"},
+    MESSAGE: {"long_name": "why a trajectory is not complete"},
+}
+"""Attributes of the arrays that every sweep has."""
+
+ROWS = (1024, 16384)  # least and largest number of trajectories in a chunk
+CHUNKS = 16  # chunks of a small sweep, so that several processes share the work
+LARGEST_CHUNK = 4_000_000  # samples in a chunk, about 300 MB with all quantities that are computed on the way
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One array of the results: its name, its dimensions after ``trajectory``, and its labels."""
+
+    name: str
+    dimensions: tuple[str, ...]
+    unit: str
+    frame: str
+    meaning: str
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The labels as attributes of a variable in a file."""
+        labels = {"units": self.unit, "long_name": self.meaning, "frame": self.frame}
+        return {key: value for key, value in labels.items() if value}
+
+
+@dataclass(frozen=True)
+class Table:
+    """One array of statistics: its dimensions, values and labels."""
+
+    name: str
+    dimensions: tuple[str, ...]
+    values: NDArray[Any]
+    attributes: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Header:
+    """What a store knows before the first chunk: the identity of the sweep, its arrays and the rows of a chunk."""
+
+    identity: Mapping[str, str]  # what determines the results, by name
+    scene: str
+    inputs: tuple[str, ...]  # names of the values that vary
+    variables: tuple[Variable, ...]
+    count: int
+    times: NDArray[np.float64]
+    rows: int
+
+    def ranges(self) -> list[tuple[int, int]]:
+        """Return the first and the last index plus one of each chunk."""
+        return [(start, min(start + self.rows, self.count)) for start in range(0, self.count, self.rows)]
+
+
+class Store(Protocol):
+    """A place for the results of a sweep. A chunk is either missing or complete, whenever the process ends."""
+
+    header: Header
+
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; empty if the values are there."""
+
+    def pending(self) -> list[tuple[int, int]]:
+        """Return the ranges of the chunks that are missing."""
+
+    def write(self, chunk: Chunk) -> None:
+        """Add a chunk; a chunk that is there already is replaced by the same values."""
+
+    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there."""
+
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+
+
+def header_of(job: Job, rows: int | None = None) -> Header:
+    """Return the header of a sweep; ``rows`` is the number of trajectories in a chunk, by default chosen by size."""
+    design = job.design
+    inputs = [
+        Variable(f"input_{axis.target.name}", (), axis.target.unit, "", f"value of {axis.target.name} that varies")
+        for axis in design.axes
+    ]
+    if design.attitudes == "uniform":
+        inputs.append(Variable(ATTITUDE, (COMPONENT[0],), "1", "body to space", "initial attitude, scalar first"))
+    outputs = [
+        Variable(output.name, (TIME,) if output.is_series else (), output.unit, output.frame, output.meaning)
+        for output in job.outputs
+    ]
+    samples = max(1, len(job.times))
+    chosen = rows or max(1, min(max(ROWS[0], design.count // CHUNKS), ROWS[1], LARGEST_CHUNK // samples))
+    return Header(_identity(job), job.scene.name, design.names, (*inputs, *outputs), design.count, job.times, chosen)
+
+
+def _identity(job: Job) -> dict[str, str]:
+    """Return what determines the results of a sweep, by name, as short texts."""
+    import symrot
+
+    scene, design = job.scene, job.design
+    content = (scene.body._replace(description=""), scene.initial, scene.torques, scene.span.start, scene.table)
+    return {
+        "scene": _digest(repr((content, job.content if any(axis.target.path for axis in design.axes) else None))),
+        "vary": _digest(repr(design.axes)),
+        "attitudes": design.attitudes,
+        "sampling": design.sampling,
+        "count": str(design.count),
+        "seed": str(design.seed),
+        "times": _digest(repr(job.times.tolist())),
+        "output": _digest(repr(job.outputs)),
+        "method": job.method,
+        "tolerance": repr(job.tolerance),
+        "version of symrot": symrot.__version__,
+    }
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def difference(own: Mapping[str, str], other: object) -> str:
+    """Return the names of the entries in which two identities differ, such as ``seed, count``; empty if they agree."""
+    if not isinstance(other, Mapping):
+        return "it has no description"
+    return ", ".join(name for name in own if own[name] != other.get(name))
+
+
+def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a chunk by the names in the header, without status and messages.
+
+    ``names`` are the names of the values that vary, in the order of the draws.
+    """
+    arrays: dict[str, NDArray[Any]] = {f"input_{name}": chunk.draws.values[:, k] for k, name in enumerate(names)}
+    if chunk.draws.attitudes is not None:
+        arrays[ATTITUDE] = chunk.draws.attitudes
+    return arrays | chunk.outputs
+
+
+def messages_of(chunk: Chunk) -> NDArray[Any]:
+    """Return the messages of a chunk, one text for each trajectory."""
+    texts = np.full(chunk.stop - chunk.start, "", dtype=object)
+    for row, message in chunk.messages.items():
+        texts[row] = message
+    return texts

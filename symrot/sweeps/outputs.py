@@ -1,0 +1,187 @@
+"""Outputs of a sweep: quantities of each trajectory at all sample times, at one time, or their extremes and mean.
+
+An output is written as text: ``energy`` is the energy at all sample times, ``omega_1@end`` one component at the last
+time, ``axis_z@2.5`` at t = 2.5 s, ``omega_3@max`` the largest value among the samples.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.conventions import parse_sequence
+from symrot.errors import InputError, nearest
+from symrot.formula.exact_numbers import read, show
+from symrot.results.labels import COMPONENTS, FRAMES
+from symrot.scene.scene import Scene
+from symrot.scene.tables import QUANTITIES, Output
+
+__all__ = ["AT_TIMES", "REDUCTIONS", "SweepOutput", "evaluate", "read_outputs", "sample_times", "scene_for"]
+
+Floats = NDArray[np.float64]
+
+AT_TIMES = ("start", "end")
+REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
+    "min": ("smallest value among the samples", lambda values: values.min(axis=1)),
+    "max": ("largest value among the samples", lambda values: values.max(axis=1)),
+    "mean": ("mean of the samples", lambda values: values.mean(axis=1)),
+}
+"""For each name after @, its meaning and the function from samples, shape (n, m), to the output, shape (n,)."""
+
+
+@dataclass(frozen=True)
+class SweepOutput:
+    """One output: its name, the component of a quantity, and the sample times or the reduction that it uses."""
+
+    name: str
+    quantity: str
+    component: int
+    reduction: str  # "" for the samples at all times, a name in REDUCTIONS, or "at" for one time
+    time: float  # the time, s, of the reduction "at"
+    unit: str
+    frame: str
+    meaning: str
+
+    @property
+    def is_series(self) -> bool:
+        """Whether the output has one value for each sample time."""
+        return not self.reduction
+
+
+def _components(output: Output) -> dict[str, tuple[str, int]]:
+    """Return, for each name of a component, its quantity and its index."""
+    names = {name: (quantity, k) for quantity, parts in COMPONENTS.items() for k, name in enumerate(parts)}
+    if output.sequence:
+        names |= {f"euler_{output.sequence}_{k + 1}": ("euler", k) for k in range(3)}
+    return names
+
+
+def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
+    """Return the scene whose output section contains the Euler sequence that the outputs of a sweep name, if any."""
+    from dataclasses import replace
+
+    sequences = []
+    for text in texts:
+        word, _, rest = text.partition("@")[0].strip().partition("_")
+        sequence = rest.partition("_")[0]
+        if word == "euler" and len(sequence) == 3 and sequence not in sequences:
+            sequences.append(sequence)
+    if not sequences or sequences == [scene.output.sequence]:
+        return scene
+    if len(sequences) > 1:
+        raise InputError(f"output: expected Euler angles of one sequence, got {' and '.join(sequences)}")
+    parse_sequence(sequences[0])
+    return replace(scene, output=Output(scene.output.quantities, sequences[0], False))
+
+
+def read_outputs(texts: Sequence[str], scene: Scene, times: Floats) -> tuple[SweepOutput, ...]:
+    """Return the outputs that texts such as ``omega_1@end`` describe.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Names of quantities or of components, each alone or with ``@start``, ``@end``, ``@min``, ``@max``, ``@mean`` or
+        ``@TIME`` in s. A quantity of several components stands for all of them.
+    scene : Scene
+        The scene; it determines the Euler sequence.
+    times : array, shape (m,)
+        Sample times, s.
+
+    Raises
+    ------
+    InputError
+        If a name or a reduction is unknown, or if an output occurs twice.
+    """
+    outputs = [output for text in texts for output in _read(text, scene, times)]
+    names = [output.name for output in outputs]
+    twice = next((name for k, name in enumerate(names) if name in names[:k]), None)
+    if twice is not None:
+        raise InputError(f"output: expected each output once, got {twice} a second time")
+    if not outputs:
+        raise InputError("output: expected at least one output, such as omega_1@end")
+    return tuple(outputs)
+
+
+def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
+    if not isinstance(text, str):
+        raise InputError(f"output: expected a text such as 'omega_1@end', got {show(text)}")
+    name, at, word = (part.strip() for part in text.partition("@"))
+    reduction, time, suffix = _reduction(word, times) if at else ("", 0.0, "")
+    components = _components(scene.output)
+    if name in components:
+        chosen = [name]
+    elif name in QUANTITIES:
+        chosen = [key for key, (quantity, _) in components.items() if quantity == name]
+    else:
+        chosen = []
+    if not chosen:
+        known = [*QUANTITIES, *components]
+        reason = nearest(name, known) or "Euler angles are written as euler_ZXZ_1"
+        raise InputError(f"output: expected one of {', '.join(QUANTITIES)} or a component, got {show(name)} ({reason})")
+    outputs = []
+    for key in chosen:
+        quantity, k = components[key]
+        unit, meaning = QUANTITIES[quantity]
+        if quantity == "euler":
+            unit = "deg" if scene.output.degrees else "rad"
+            meaning = f"Euler angle {k + 1} of {scene.output.sequence}, in order of application"
+        if reduction:
+            meaning += f", {REDUCTIONS[reduction][0]}" if reduction in REDUCTIONS else f", at t = {time!r} s"
+        frame = FRAMES.get(quantity, "")
+        outputs.append(SweepOutput(key + suffix, quantity, k, reduction, time, unit, frame, meaning))
+    return outputs
+
+
+def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
+    """Return the reduction that a word after @ describes, its time, and the end of the name of the output."""
+    if word in REDUCTIONS:
+        return word, 0.0, f"@{word}"
+    if word in AT_TIMES:
+        return "at", float(times[0] if word == "start" else times[-1]), f"@{word}"
+    known = (*AT_TIMES, *REDUCTIONS)
+    hint = nearest(word, known)
+    expectation = f"one of {', '.join(known)} or a time in s after @" + (f" ({hint})" if hint else "")
+    time = float(read(word, "output", expectation))
+    low, high = float(times.min()), float(times.max())
+    if not low <= time <= high:
+        raise InputError(f"output: expected a time from {low!r} to {high!r} s after @, got {show(word)}")
+    return "at", time, f"@{word}"
+
+
+def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
+    """Return the times, s, at which the outputs need samples; these are fewer if no output needs all times."""
+    whole = any(output.reduction != "at" for output in outputs)
+    own = [output.time for output in outputs if output.reduction == "at"]
+    return np.unique([*(times.tolist() if whole else []), *own])
+
+
+def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, samples: Floats) -> dict[str, Floats]:
+    """Return the outputs of the motions of an ensemble by name, each of shape (n, m) or (n,).
+
+    Parameters
+    ----------
+    outputs : sequence of SweepOutput
+        The outputs.
+    ensemble : Ensemble
+        n motions with samples at the times ``samples``.
+    times : array, shape (m,)
+        The sample times of the sweep, s.
+    samples : array
+        The times of the samples, s, ascending, from :func:`sample_times`.
+    """
+    places = np.searchsorted(samples, times) if np.isin(times, samples).all() else np.empty(0, dtype=np.intp)
+    values: dict[str, Floats] = {}
+    quantities: dict[str, Floats] = {}
+    for output in outputs:
+        if output.quantity not in quantities:
+            whole = ensemble.quantity(output.quantity)
+            quantities[output.quantity] = whole.reshape(*whole.shape[:2], -1)
+        column = quantities[output.quantity][..., output.component]
+        if output.reduction == "at":
+            values[output.name] = column[:, int(np.searchsorted(samples, output.time))]
+        else:
+            series = column[:, places]
+            values[output.name] = REDUCTIONS[output.reduction][1](series) if output.reduction else series
+    return values

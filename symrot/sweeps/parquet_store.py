@@ -1,0 +1,174 @@
+"""Results of a sweep as a folder of Parquet files, which pandas opens: one file for each chunk of trajectories.
+
+If an output has values at all sample times, there is one row for each trajectory and time; otherwise one row for each
+trajectory. A file is renamed to its name when it is complete, so that a file that is there has all its rows.
+"""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.files.writing import write
+from symrot.sweeps.chunk import Chunk
+from symrot.sweeps.layout import (
+    COMPONENT,
+    MESSAGE,
+    STATUS,
+    TIME,
+    TRAJECTORY,
+    Header,
+    Table,
+    arrays_of,
+    difference,
+    messages_of,
+)
+from symrot.sweeps.optional import optional
+
+__all__ = ["ParquetStore"]
+
+DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Parquet ignore names that begin with _
+
+
+class ParquetStore:
+    """The store of a sweep in the folder at ``path``; the folder of the same sweep is continued.
+
+    Raises
+    ------
+    InputError
+        If pyarrow is not installed, or if the path contains something else than results of the same sweep.
+    """
+
+    def __init__(self, path: Path, header: Header) -> None:
+        from dataclasses import replace
+
+        self._parquet, self._arrow = optional("pyarrow.parquet", "-o"), optional("pyarrow", "-o")
+        self.path = path
+        description = path / DESCRIPTION
+        if path.exists() and not (path.is_dir() and not any(path.iterdir())):
+            expectation = f"{path}: expected a new name or the results of this sweep"
+            try:
+                other = json.loads(description.read_text(encoding="utf-8"))
+                identity, rows = other["identity"], int(other["rows"])
+            except (OSError, LookupError, ValueError, TypeError):
+                raise InputError(f"{expectation}, got something else; choose another name") from None
+            if different := difference(header.identity, identity):
+                raise InputError(
+                    f"{expectation}, got those of a sweep with a different {different}; choose another name"
+                )
+            header = replace(header, rows=rows)
+        else:
+            path.mkdir(exist_ok=True)
+            text = json.dumps({"identity": dict(header.identity), "rows": header.rows}, indent=2)
+            write(description, lambda stream: stream.write(text.encode()))
+        self.header = header
+        self._long = any(TIME in variable.dimensions for variable in header.variables)
+
+    def _file(self, start: int) -> Path:
+        return self.path / f"part-{start:012d}.parquet"
+
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; the values are there while a sweep runs."""
+        return ""
+
+    def pending(self) -> list[tuple[int, int]]:
+        """Return the ranges of the chunks that are missing."""
+        return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
+
+    def write(self, chunk: Chunk) -> None:
+        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        n, times = chunk.stop - chunk.start, self.header.times
+        repeats = len(times) if self._long else 1
+        columns: dict[str, Any] = {TRAJECTORY: np.repeat(np.arange(chunk.start, chunk.stop), repeats)}
+        if self._long:
+            columns["t"] = np.tile(times, n)
+        arrays = arrays_of(chunk, self.header.inputs)
+        for variable in self.header.variables:
+            values = arrays[variable.name]
+            if variable.dimensions == (TIME,):
+                columns[variable.name] = values.ravel()
+            elif variable.dimensions:
+                parts = zip(_parts(variable.name), values.T, strict=True)
+                columns |= {name: np.repeat(part, repeats) for name, part in parts}
+            else:
+                columns[variable.name] = np.repeat(values, repeats)
+        columns[STATUS] = np.repeat(chunk.status, repeats)
+        columns[MESSAGE] = self._arrow.array(np.repeat(messages_of(chunk), repeats), type=self._arrow.string())
+        table = self._arrow.table(columns).replace_schema_metadata(self._metadata())
+        writer = self._parquet.write_table
+        write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
+
+    def _metadata(self) -> dict[str, str]:
+        """Return the labels of all columns; pandas shows them as ``attrs``."""
+        by_column = {
+            name: variable
+            for variable in self.header.variables
+            for name in ([variable.name] if variable.dimensions in ((), (TIME,)) else _parts(variable.name))
+        }
+        labels = {
+            "units": {"t": "s"} | {name: variable.unit for name, variable in by_column.items()},
+            "frames": {name: variable.frame for name, variable in by_column.items()},
+            "meanings": {name: variable.meaning for name, variable in by_column.items()},
+            "scene": self.header.scene,
+        }
+        return {"PANDAS_ATTRS": json.dumps(labels)}
+
+    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        parts = []
+        variable = next((each for each in self.header.variables if each.name == name), None)
+        for first in range(start // self.header.rows * self.header.rows, stop, self.header.rows):
+            column = self._parquet.read_table(self._file(first), columns=[name], partitioning=None)
+            values = column[name].to_numpy().reshape(-1, len(self.header.times) if self._long else 1)
+            whole = values if variable is not None and variable.dimensions == (TIME,) else values[:, 0]
+            parts.append(whole[max(0, start - first) : stop - first])
+        return np.concatenate(parts)
+
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+        path = self.path / STATISTICS
+        if not path.exists():
+            return None
+        rows = self._parquet.read_table(path, filters=[("name", "=", name)])
+        counts = [rows[key].to_numpy() for key in ("index", "t")]
+        if not len(rows):
+            return None
+        shape = [len(np.unique(column)) for column in counts if not np.isnan(column.astype(float)).all()]
+        return np.asarray(rows["value"].to_numpy().reshape(shape))
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there; the components of attitudes are columns of their own."""
+        return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
+
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        if tables:
+            rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
+            write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
+        if alone:
+            raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
+
+    def dataset(self) -> Any:
+        """Return the results as a pandas DataFrame."""
+        pandas = optional("pandas", "to_dataframe")
+        return pandas.read_parquet(os.fspath(self.path))
+
+
+def _parts(name: str) -> list[str]:
+    """Return the names of the columns of the components of a quaternion."""
+    return [f"{name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
+
+
+def _rows(table: Table, times: NDArray[np.float64]) -> list[dict[str, Any]]:
+    """Return an array of statistics as rows (name, t, index, value); index counts percentiles or bins."""
+    rows = []
+    for place, value in np.ndenumerate(table.values):
+        axes = dict(zip(table.dimensions, place, strict=True))
+        time = float(times[axes.pop(TIME)]) if TIME in axes else None
+        rows.append({"name": table.name, "t": time, "index": next(iter(axes.values()), None), "value": float(value)})
+    return rows

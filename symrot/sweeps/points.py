@@ -1,0 +1,154 @@
+"""Points of the unit cube for the random values of a sweep, each computed from the seed and its index alone.
+
+Therefore any process can compute any part of the points, and the parts have the same bits wherever they are cut.
+
+- ``random``: one Philox stream for each name. Philox computes the k-th number of its stream directly from k.
+- ``latin``: a Latin hypercube: for n points, each name has one point in each of n intervals of equal length. The order
+  of the intervals is a permutation of 0 to n - 1 by a Feistel network, which needs no memory for the permutation.
+- ``sobol``: scrambled Sobol points of ``scipy.stats.qmc.Sobol``, which skips to the index of the first point.
+"""
+
+import warnings
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+
+__all__ = ["SAMPLINGS", "unit_points"]
+
+Floats = NDArray[np.float64]
+Words = NDArray[np.uint64]
+SOBOL_BITS = 30  # scipy's default: at most 2^30 points
+FEISTEL_ROUNDS = 6
+BLOCK = 4  # words of 64 bits that Philox computes from one value of its counter
+
+
+def _key(seed: int, stream: str, words: int = 2) -> Words:
+    """Return the key of the random numbers with a name."""
+    sequence = np.random.SeedSequence(seed, spawn_key=tuple(stream.encode()))
+    return sequence.generate_state(words, np.uint64).astype(np.uint64)
+
+
+def _words(seed: int, stream: str, start: int, stop: int) -> Words:
+    """Return the random 64-bit words ``start`` to ``stop`` of a stream."""
+    bits = np.random.Philox(key=_key(seed, stream), counter=start // BLOCK)
+    words: Words = bits.random_raw(stop - start // BLOCK * BLOCK)[start % BLOCK :]
+    return words
+
+
+def _uniform(words: Words) -> Floats:
+    """Return numbers in the open interval (0, 1): the middles of 2^52 intervals, exact in doubles."""
+    return ((words >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
+
+
+def _random(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
+    return np.stack([_uniform(_words(seed, stream, start, stop)) for stream in streams], axis=1)
+
+
+def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
+    index = np.arange(start, stop, dtype=np.uint64)
+    points = np.empty((stop - start, len(streams)))
+    for k, stream in enumerate(streams):
+        within = _uniform(_words(seed, stream, start, stop))
+        points[:, k] = (permuted(index, count, _key(seed, f"{stream} order", FEISTEL_ROUNDS)) + within) / count
+    return np.clip(points, 2.0**-53, 1 - 2.0**-53)  # the sum may round up to the end of the last interval
+
+
+def permuted(index: Words, count: int, keys: Words) -> Words:
+    """Return the places of indices below ``count`` in a permutation of 0 to count - 1 that ``keys`` determine.
+
+    A Feistel network permutes the numbers of an even number of bits; an index that it leads to a number of ``count`` or
+    more passes through it again (cycle walking), which gives a permutation of the smaller numbers.
+    """
+    half = max(1, (int(count - 1).bit_length() + 1) // 2)
+    shift, mask = np.uint64(half), np.uint64(2**half - 1)
+    places = index.copy()
+    active = np.arange(len(index))
+    while len(active):
+        left, right = places[active] >> shift, places[active] & mask
+        for key in keys:
+            left, right = right, left ^ (_mixed(right ^ key) & mask)
+        places[active] = left << shift | right
+        active = active[places[active] >= count]
+    return places
+
+
+def _mixed(words: Words) -> Words:
+    """Return well mixed words: the finaliser of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014)."""
+    words = (words ^ (words >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    words = (words ^ (words >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return words ^ (words >> np.uint64(31))
+
+
+class _Sobol:
+    """Sobol points of one sweep; a part that follows an earlier one costs only its own points."""
+
+    def __init__(self, dimensions: int, seed: int) -> None:
+        self._dimensions, self._seed, self._lock = dimensions, seed, Lock()
+        self._restart()
+
+    def _restart(self) -> None:
+        from scipy.stats.qmc import Sobol
+
+        self._engine: Any = Sobol(self._dimensions, scramble=True, seed=self._seed, bits=SOBOL_BITS)
+        self._next = 0
+
+    def points(self, start: int, stop: int) -> Floats:
+        """Return the points ``start`` to ``stop``; threads take turns, since the position is shared."""
+        with self._lock:
+            return self._points(start, stop)
+
+    def _points(self, start: int, stop: int) -> Floats:
+        if start < self._next:
+            self._restart()
+        if start > self._next:
+            self._engine.fast_forward(start - self._next)
+        with warnings.catch_warnings():  # the balance of a part that is no power of two does not matter
+            warnings.simplefilter("ignore", UserWarning)
+            points: Floats = self._engine.random(stop - start)
+        self._next = stop
+        return points + 2.0 ** -(SOBOL_BITS + 1)  # the middle of the cell of a point, never 0
+
+
+_sobol_points = lru_cache(maxsize=4)(_Sobol)
+
+
+def _sobol(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
+    if count > 2**SOBOL_BITS:
+        raise InputError(f"count: expected at most {2**SOBOL_BITS} draws with the sampling sobol, got {count}")
+    return _sobol_points(len(streams), seed).points(start, stop)
+
+
+SAMPLINGS: dict[str, Callable[[int, Sequence[str], int, int, int], Floats]] = {
+    "random": _random,
+    "latin": _latin,
+    "sobol": _sobol,
+}
+"""For each name of a sampling, the function that returns its points."""
+
+
+def unit_points(sampling: str, seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
+    """Return the points ``start`` to ``stop`` of ``count`` points in the open unit cube, shape (stop - start, d).
+
+    Parameters
+    ----------
+    sampling : str
+        A name in :data:`SAMPLINGS`.
+    seed : int
+        The seed, zero or more.
+    streams : sequence of d texts
+        Names of the d coordinates. With ``random`` and ``latin``, the numbers of a coordinate depend on its own name
+        and not on the other coordinates.
+    count : int
+        Number of all points.
+    start, stop : int
+        The part of the points to compute, 0 <= start <= stop <= count.
+    """
+    if not streams:
+        return np.empty((stop - start, 0))
+    return SAMPLINGS[sampling](seed, streams, count, start, stop)

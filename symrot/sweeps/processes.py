@@ -1,0 +1,130 @@
+"""Chunks of a sweep by processes on this machine.
+
+A process that is killed costs only the chunks it had; they are computed again by a new one. The processes end with the
+process that started them, however that ends.
+"""
+
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from functools import lru_cache
+from multiprocessing.connection import wait as wait_for
+from threading import Thread
+from types import ModuleType
+from typing import Any
+
+from symrot.errors import PropagationError
+from symrot.sweeps.chunk import Chunk, Job, compute
+
+__all__ = ["compute_packed", "cores", "packed", "run_here"]
+
+Range = tuple[int, int]
+IN_FLIGHT = 2  # chunks for each process: one to compute and one to begin with at once
+MOST_LOSSES = 5  # times that processes may end one after the other without a chunk in between
+
+
+def cores() -> int:
+    """Return the number of processor cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def packed(job: Job) -> bytes:
+    """Return a job as bytes, which :func:`compute_packed` takes."""
+    return pickle.dumps(job)
+
+
+@lru_cache(maxsize=2)
+def _unpacked(text: bytes) -> Job:
+    job: Job = pickle.loads(text)
+    return job
+
+
+def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
+    """Return a chunk of a job in bytes; a process unpacks the job once, and the scene then has its cached values."""
+    return compute(_unpacked(text), start, stop)
+
+
+def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]:
+    """Yield the chunks of a job in the order in which they are complete, computed by ``workers`` processes.
+
+    Raises
+    ------
+    PropagationError
+        If processes are killed again and again, for example because memory is short.
+    """
+    workers = min(workers, len(ranges))
+    if workers <= 1:
+        yield from (compute(job, *each) for each in ranges)
+        return
+    compute(job, ranges[0][0], ranges[0][0] + 1)  # compiles the kernel once, before the processes need it
+    context = multiprocessing.get_context("spawn")  # after a fork, other threads of the parent would leave locks behind
+    text, missing, losses = packed(job), deque(ranges), 0
+    while missing:
+        pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin)
+        running: dict[Future[Chunk], Range] = {}
+        try:
+            while missing or running:
+                while missing and len(running) < IN_FLIGHT * workers:
+                    each = missing.popleft()
+                    with _without_main():
+                        running[pool.submit(compute_packed, text, *each)] = each
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    chunk = future.result()
+                    del running[future]
+                    losses = 0
+                    yield chunk
+        except BrokenProcessPool:
+            losses += 1
+            missing.extendleft(sorted(running.values(), reverse=True))
+            if losses == MOST_LOSSES:
+                raise PropagationError(
+                    f"{MOST_LOSSES} times in a row a process of the sweep was killed before it completed a chunk; "
+                    "choose smaller chunks or fewer workers, and run the sweep again to go on"
+                ) from None
+        finally:
+            _stop(pool)
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Hide the program that called from new processes.
+
+    They would run it again from its first line, to which a program without ``if __name__ == "__main__"`` would object;
+    a chunk needs nothing of it.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
+def _begin() -> None:
+    """Prepare a process: Ctrl-C is left to its parent, and it ends when its parent does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait_for([sentinel])
+    os._exit(1)
+
+
+def _stop(pool: Any) -> None:
+    """End the processes of a pool at once; chunks that they compute are computed again when they are needed."""
+    processes = list((pool._processes or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        process.kill()
+    for process in processes:
+        process.join()

@@ -1,0 +1,334 @@
+"""Sweeps: many motions of one scene, whose initial states and constants vary by a design, into a file or memory."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.ensemble.ensemble import read_tolerance
+from symrot.ensemble.variation import read_times
+from symrot.errors import InputError, nearest
+from symrot.formula.exact_numbers import show
+from symrot.planning.plan import make_plan
+from symrot.propagation.method import choose_method
+from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
+from symrot.sweeps.cluster import run_on_cluster
+from symrot.sweeps.design import read_design
+from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
+from symrot.sweeps.memory_store import MemoryStore
+from symrot.sweeps.outputs import read_outputs, scene_for
+from symrot.sweeps.parquet_store import ParquetStore
+from symrot.sweeps.processes import cores, run_here
+from symrot.sweeps.statistics import read_statistics, statistics_of
+from symrot.sweeps.targets import Content
+from symrot.sweeps.zarr_store import ZarrStore
+
+__all__ = ["STORES", "Sweep", "sweep"]
+
+STORES: dict[str, Callable[[Path, Header], Any]] = {".zarr": ZarrStore, ".parquet": ParquetStore}
+"""For each suffix of a file, its store."""
+
+KEEP = ("all", "statistics")
+FINAL_STATE = ("omega@end",)
+BLOCK = 1_000_000
+MOST_WORKERS = 1024
+SHOWN_REASONS = 3
+LARGEST_IN_MEMORY = 4_000_000_000  # bytes of results without a file
+
+
+def _silent(text: str) -> None:
+    """Show no progress."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The result of :func:`sweep`: inputs, outputs, status and statistics of all trajectories.
+
+    Attributes
+    ----------
+    path : Path or None
+        The file with the results; None if they are in memory.
+    count : int
+        Number of trajectories.
+    stopped, impossible : int
+        Number of trajectories that stopped early, and of those whose values no body or motion can have.
+    reasons : list of (int, str)
+        The first trajectories that are not complete, each with the reason.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> result = symrot.sweep("t_handle", {"omega_1": "normal(0, 0.01)"}, count=8, seed=1, workers=1)
+    >>> result.count, result.stopped, result.impossible
+    (8, 0, 0)
+    """
+
+    path: Path | None
+    count: int
+    stopped: int
+    impossible: int
+    reasons: list[tuple[int, str]]
+    _store: Any
+
+    def array(self, name: str) -> NDArray[Any]:
+        """Return one array of the results, which has all its values in memory.
+
+        Parameters
+        ----------
+        name : str
+            An output such as ``"omega_1@end"``, an input such as ``"input_weight"``, ``"status"``, ``"message"``, or a
+            statistic such as ``"energy_mean"``.
+
+        Returns
+        -------
+        array
+            Outputs at all times have the shape (trajectories, times), the others (trajectories,); statistics at all
+            times have the times as last axis.
+
+        Raises
+        ------
+        InputError
+            If there is no array with this name.
+        """
+        header = self._store.header
+        names = [STATUS, MESSAGE, *(variable.name for variable in header.variables)]
+        values: NDArray[Any] | None = self._store.table(name)
+        if values is None and name in names and self._store.has(name):
+            values = self._store.read(name, 0, header.count)
+        if values is None:
+            hint = nearest(name, names)
+            raise InputError(f"array: expected one of {', '.join(names)} or a statistic, got {show(name)}"
+                             + (f" ({hint})" if hint else ""))  # fmt: skip
+        return values
+
+    def to_xarray(self) -> Any:
+        """Return the results as an xarray Dataset with units; values in a Zarr file are read when they are used."""
+        if isinstance(self._store, ParquetStore):
+            raise InputError("to_xarray: expected a sweep in memory or in a Zarr file, got a Parquet file")
+        return self._store.dataset()
+
+    def to_dataframe(self) -> Any:
+        """Return the results as a pandas DataFrame, which has all values in memory."""
+        if isinstance(self._store, ParquetStore):
+            return self._store.dataset()
+        return self._store.dataset().to_dataframe()
+
+
+def sweep(
+    scene: SceneSource,
+    vary: Mapping[str, object] | None = None,
+    *,
+    attitudes: str = "scene",
+    sampling: str = "random",
+    count: float | str | None = None,
+    seed: int = 0,
+    outputs: str | Sequence[str] = FINAL_STATE,
+    t: ArrayLike | None = None,
+    statistics: str | Sequence[str] = (),
+    keep: str = "all",
+    path: str | Path | None = None,
+    method: str = "auto",
+    tolerance: float | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    chunk: int | None = None,
+    table_folders: str | Path | Sequence[str | Path] = (),
+    progress: Callable[[int, int], None] | None = None,
+    note: Callable[[str], None] = _silent,
+) -> Sweep:
+    """Propagate many motions of a scene by a design of varied values; write chosen outputs of each.
+
+    The results have the same bits for any number of workers and any chunks. With a file, a sweep that was stopped goes
+    on when it is called again with the same arguments.
+
+    Parameters
+    ----------
+    scene : Scene, str, Path or dict
+        The scene: an object, the name of a shipped scene, the path of a file, or the content of a file.
+    vary : dict
+        For each value that varies, its name and its law. Names: ``omega_1`` to ``omega_3``; a constant such as
+        ``weight`` or ``I_xx``, as for :func:`symrot.propagate_ensemble`; a number in the scene file, such as
+        ``body.mass`` or ``body.part[0].radius``. Laws: ``"normal(mean, deviation)"``, ``"uniform(low, high)"``,
+        ``"loguniform(low, high)"``; grids ``"linspace(first, last, count)"``, ``"geomspace(first, last, count)"``,
+        ``"values(a, b, ...)"`` or a sequence of numbers. Several grids form a product, with all draws at each point.
+    attitudes : str
+        ``"uniform"`` draws initial attitudes uniformly from all rotations; default: the attitude in the scene.
+    sampling : str
+        ``"random"``, ``"latin"`` (Latin hypercube) or ``"sobol"`` for the values that are drawn.
+    count : number, optional
+        Number of trajectories, a multiple of the number of grid points; default: the number of grid points.
+    seed : int
+        Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
+    outputs : str or sequence of str
+        Quantities or components, such as ``"energy"`` at all sample times, ``"omega_1@end"``, ``"axis_z@2.5"`` (at
+        2.5 s), ``"omega_3@max"``; also ``@start``, ``@min`` and ``@mean``.
+    t : array, shape (m,), optional
+        Sample times, s; default: the sample times of the scene.
+    statistics : str or sequence of str
+        ``"mean"`` (and standard deviation), ``"envelope"``, ``"percentiles(5, 50, 95)"``, ``"histogram(BINS)"`` of
+        each output at each time, over the trajectories that have a value.
+    keep : str
+        ``"all"``, or ``"statistics"`` to remove the values of the trajectories at the end.
+    path : str or Path, optional
+        The file to write, ``NAME.zarr`` or ``NAME.parquet``; default: the results stay in memory.
+    method, tolerance
+        As for :func:`symrot.propagate_ensemble`.
+    workers : int, optional
+        Number of processes on this machine; default: the number of cores.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead.
+    chunk : int, optional
+        Number of trajectories in a chunk; it does not change the results.
+    table_folders
+        As for :func:`symrot.load_scene`.
+    progress : callable, optional
+        Called with the number of complete trajectories and the number of all.
+    note : callable, optional
+        Called with a text about each stage after the last chunk.
+
+    Returns
+    -------
+    Sweep
+        The results. Trajectories whose values no body can have, and trajectories that stop early, have a status and a
+        message instead of outputs.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used, or if ``path`` contains something else than results of the same sweep.
+    PropagationError
+        If processes or a cluster fail again and again; complete chunks remain in the file.
+
+    Notes
+    -----
+    Units: SI. Convention: :mod:`symrot.conventions`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> result = symrot.sweep("heavy_top_loops", {"body.mass": "linspace(0.4, 0.6, 3)"}, outputs="omega_3@end")
+    >>> result.array("omega_3@end").round(6).tolist()
+    [200.0, 200.0, 200.0]
+    """
+    chosen = read_statistics([statistics] if isinstance(statistics, str) else statistics)
+    _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
+    _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
+    target = None if path is None else _target(path, keep)
+    number = cores() if workers is None else workers
+    _whole(number, "workers", MOST_WORKERS)
+    if chunk is not None:
+        _whole(chunk, "chunk", 10_000_000)
+    folders = [table_folders] if isinstance(table_folders, str | Path) else list(table_folders)
+    texts = [outputs] if isinstance(outputs, str) else list(outputs)
+    job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
+    header = header_of(job, chunk)
+    if target is None:
+        _require_memory(header)
+    store: Store = MemoryStore(header) if target is None else STORES[target.suffix.lower()](target, header)
+    alone = repr(chosen) if keep == "statistics" else ""
+    if store.alone:
+        _require_same(store.alone, alone, target)
+        store.finish([], alone)  # removes values that a process that was stopped left
+    else:
+        pending = store.pending()
+        done = header.count - sum(stop - start for start, stop in pending)
+        if progress is not None:
+            progress(done, header.count)
+        for part in _chunks(job, pending, number, scheduler):
+            store.write(part)
+            done += part.stop - part.start
+            if progress is not None:
+                progress(done, header.count)
+        outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
+        tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
+        store.finish(tables, alone)
+    return _result(store, target)
+
+
+def _chunks(job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None) -> Iterator[Any]:
+    if not pending:
+        return iter(())
+    return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler)
+
+
+def _require(condition: bool, where: str, expectation: str, value: object) -> None:
+    if not condition:
+        raise InputError(f"{where}: expected {expectation}, got {show(value)}")
+
+
+def _require_same(present: str, statistics: str, path: Path | None) -> None:
+    if present != statistics:
+        raise InputError(
+            f"{path}: expected the same statistics and keep as before, because the values of the trajectories were "
+            "removed there; choose another name for other results"
+        )
+
+
+def _require_memory(header: Header) -> None:
+    """Raise InputError if the results of a sweep are too large for memory."""
+    sizes = [len(header.times) if TIME in variable.dimensions else 4 for variable in header.variables]
+    size = 8 * header.count * sum(sizes)
+    if size > LARGEST_IN_MEMORY:
+        raise InputError(
+            f"path: expected a file to write, such as out.zarr, for results of up to {size / 1e9:.1f} GB, got none"
+        )
+
+
+def _whole(value: object, where: str, most: int) -> None:
+    good = isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
+    _require(good, where, f"a whole number from 1 to {most}", value)
+
+
+def _target(path: str | Path, keep: str) -> Path:
+    """Return the path of the file to write, after checks."""
+    target = Path(path)
+    if target.suffix.lower() not in STORES:
+        raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
+    if not target.parent.is_dir():
+        raise InputError(f"-o: expected a name in an existing folder, got {str(path)!r}")
+    if target.suffix.lower() != ".zarr" and keep == "statistics":
+        raise InputError(f"-o: expected a name that ends in .zarr to keep statistics alone, got {str(path)!r}")
+    return target
+
+
+def _job(
+    scene: SceneSource, vary: Mapping[str, object], attitudes: str, sampling: str, count: object,
+    seed: object, texts: Sequence[str], t: ArrayLike | None, method: str, tolerance: float | None,
+    folders: Sequence[str | Path],
+) -> Job:  # fmt: skip
+    """Return the job that the arguments of a sweep describe."""
+    own = scene_for(load_scene(scene, table_folders=folders), texts)
+    content = _content(own)
+    _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
+    design = read_design(own, content, vary, attitudes, sampling, count, seed)
+    times = read_times(t, own, 1)
+    _require(times.ndim == 1 and len(times) > 0, "t", "times in s, shape (m,)", t)
+    _require(isinstance(method, str), "method", "the name of a method", method)
+    if method not in ("auto", "exact"):
+        choose_method(make_plan(own), method)  # raises an error that lists the methods
+    aim = float(own.tolerance) if tolerance is None else read_tolerance(tolerance)
+    outputs = read_outputs(texts, own, np.sort(times))
+    return prepared(Job(design, own, content, np.sort(times), outputs, method, aim))
+
+
+def _content(scene: Scene) -> Content | None:
+    """Return the content from which a scene was read; None if its parts were replaced later."""
+    try:
+        return scene.to_dict()
+    except InputError:  # only values of its constants can vary
+        return None
+
+
+def _result(store: Store, path: Path | None) -> Sweep:
+    stopped, impossible, reasons = 0, 0, list[tuple[int, str]]()
+    count = store.header.count
+    for start in range(0, count, BLOCK):
+        status: NDArray[Any] = store.read(STATUS, start, min(start + BLOCK, count))
+        stopped, impossible = stopped + int((status == STOPPED).sum()), impossible + int((status == IMPOSSIBLE).sum())
+        for row in np.flatnonzero(status)[: SHOWN_REASONS - len(reasons)].tolist():
+            reasons.append((start + row, str(store.read(MESSAGE, start + row, start + row + 1)[0])))
+    return Sweep(path, count, stopped, impossible, reasons, store)

@@ -1,0 +1,175 @@
+"""Results of a sweep as a Zarr group, which xarray opens: one array for each input and output, with its units.
+
+A chunk of the sweep is one chunk of each array. Zarr writes each chunk to a temporary file and renames it, and the
+status of a chunk is written last. A chunk whose status is there is thus complete, whenever a process was stopped.
+"""
+
+import json
+import os
+import shutil
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.sweeps.chunk import Chunk
+from symrot.sweeps.layout import (
+    COMPONENT,
+    LABELS,
+    MESSAGE,
+    NOT_COMPUTED,
+    STATUS,
+    TIME,
+    TRAJECTORY,
+    Header,
+    Table,
+    arrays_of,
+    difference,
+    messages_of,
+)
+from symrot.sweeps.optional import optional
+
+__all__ = ["ZarrStore"]
+
+IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finished", "symrot_statistics_alone"
+
+
+class ZarrStore:
+    """The store of a sweep in the folder at ``path``; the folder of the same sweep is continued.
+
+    Raises
+    ------
+    InputError
+        If zarr is not installed, or if the path contains something else than results of the same sweep.
+    """
+
+    def __init__(self, path: Path, header: Header) -> None:
+        zarr = optional("zarr", "-o")
+        self.path = path
+        if path.exists():
+            header = self._continued(zarr, header)
+        else:
+            self._create(zarr, header)
+        self.header = header
+        self._group = zarr.open_group(str(path), mode="r+")
+        self._open: dict[str, Any] = {}
+
+    def _continued(self, zarr: Any, header: Header) -> Header:
+        """Return the header with the rows of the chunks that are there; refuse the results of another sweep."""
+        from dataclasses import replace
+
+        expectation = f"{self.path}: expected a new name or the results of this sweep"
+        try:
+            attributes = dict(zarr.open_group(str(self.path), mode="r").attrs)
+            identity, rows = json.loads(attributes[IDENTITY]), int(attributes[ROWS])
+        except (OSError, LookupError, ValueError, TypeError):
+            raise InputError(f"{expectation}, got something else; choose another name") from None
+        if different := difference(header.identity, identity):
+            raise InputError(f"{expectation}, got those of a sweep with a different {different}; choose another name")
+        return replace(header, rows=rows)
+
+    def _create(self, zarr: Any, header: Header) -> None:
+        """Write all arrays without values into a new folder, which is renamed when it is complete."""
+        part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
+        shutil.rmtree(part, ignore_errors=True)
+        try:
+            group = zarr.open_group(str(part), mode="w", zarr_format=3)
+            sizes = {TIME: len(header.times), COMPONENT[0]: len(COMPONENT[1])}
+            for variable in header.variables:
+                shape = tuple(sizes[name] for name in variable.dimensions)
+                group.create_array(
+                    variable.name, shape=(header.count, *shape), chunks=(header.rows, *shape), dtype="f8",
+                    fill_value=np.nan, dimension_names=(TRAJECTORY, *variable.dimensions),
+                    attributes=variable.attributes, compressors=_fast(zarr),
+                )  # fmt: skip
+            own = {"shape": (header.count,), "chunks": (header.rows,), "dimension_names": (TRAJECTORY,)}
+            group.create_array(STATUS, dtype="i1", fill_value=NOT_COMPUTED, attributes=LABELS[STATUS], **own)
+            group.create_array(MESSAGE, dtype=str, fill_value="", attributes=LABELS[MESSAGE], **own)
+            _add(group, Table(TIME, (TIME,), header.times, {"units": "s", "long_name": "time"}))
+            if any(COMPONENT[0] in variable.dimensions for variable in header.variables):
+                _add(group, Table(COMPONENT[0], (COMPONENT[0],), np.array(COMPONENT[1], dtype=object), {}))
+            group.attrs.update({"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))})
+            part.replace(self.path)
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
+
+    def _array(self, name: str) -> Any:
+        if name not in self._open:
+            self._open[name] = self._group[name]
+        return self._open[name]
+
+    def pending(self) -> list[tuple[int, int]]:
+        """Return the ranges of the chunks that are missing."""
+        status = self._array(STATUS)
+        return [each for each in self.header.ranges() if status[each[0]] == NOT_COMPUTED]
+
+    def write(self, chunk: Chunk) -> None:
+        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        rows = slice(chunk.start, chunk.stop)
+        for name, values in arrays_of(chunk, self.header.inputs).items():
+            self._array(name)[rows] = values
+        if chunk.messages:
+            self._array(MESSAGE)[rows] = messages_of(chunk)
+        self._array(STATUS)[rows] = chunk.status
+
+    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        values: NDArray[Any] = self._array(name)[start:stop]
+        return values
+
+    def table(self, name: str) -> NDArray[Any] | None:
+        """Return an array of statistics, or None if there is none with this name."""
+        names = [STATUS, MESSAGE, *(variable.name for variable in self.header.variables)]
+        return None if name in names or name not in self._group else np.asarray(self._group[name][...])
+
+    def has(self, name: str) -> bool:
+        """Return whether the values of an array are there."""
+        return name in self._group
+
+    @property
+    def finished(self) -> bool:
+        """Whether statistics were written already."""
+        return bool(self._group.attrs.get(FINISHED, False))
+
+    @property
+    def alone(self) -> str:
+        """The description of the statistics that replaced the values; empty if the values are there."""
+        return str(self._group.attrs.get(REMOVED, ""))
+
+    def finish(self, tables: list[Table], alone: str) -> None:
+        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        for table in tables:
+            _add(self._group, table)
+        self._group.attrs[FINISHED] = True
+        if alone:
+            self._group.attrs[REMOVED] = alone  # before the first array is removed
+            self._open.clear()
+            for variable in self.header.variables:
+                if variable.name in self._group:
+                    del self._group[variable.name]
+        zarr = optional("zarr", "-o")
+        with warnings.catch_warnings():  # zarr calls the consolidated form of version 3 experimental; xarray reads it
+            warnings.simplefilter("ignore")
+            zarr.consolidate_metadata(str(self.path))
+
+    def dataset(self) -> Any:
+        """Return the results as an xarray Dataset, which reads its values when they are used."""
+        xarray = optional("xarray", "to_xarray")
+        return xarray.open_zarr(str(self.path), consolidated=None if self.finished else False)
+
+
+def _fast(zarr: Any) -> Any:
+    """Return the fastest compressor: random digits do not compress, equal values do."""
+    return zarr.codecs.ZstdCodec(level=1)
+
+
+def _add(group: Any, table: Table) -> None:
+    is_text = table.values.dtype == object
+    array = group.create_array(
+        table.name, shape=table.values.shape, dtype=str if is_text else table.values.dtype,
+        dimension_names=table.dimensions, attributes=dict(table.attributes), overwrite=True,
+    )  # fmt: skip
+    array[...] = table.values

@@ -1,0 +1,238 @@
+"""Files of sweeps: the values of memory, units, and a sweep that goes on after its end at any place."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError
+from symrot.sweeps.zarr_store import ZarrStore
+from tests.sweeps.scenes import OUTPUTS, sweep
+
+xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
+pytest.importorskip("zarr")
+pytest.importorskip("pyarrow")
+NAMES = ("a.zarr", "a.parquet")
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return sweep(statistics="mean").to_xarray().load()
+
+
+def values(path):
+    """Return the outputs in a file by name, with shape (trajectories, times) or (trajectories,)."""
+    if path.suffix == ".zarr":
+        dataset = xarray.open_zarr(path)
+        return {name: dataset[name].values for name in (*OUTPUTS, "input_weight", "status")}
+    frame = pandas.read_parquet(path).sort_values(["trajectory", "t"])
+    single = {name: frame[name].to_numpy()[::3] for name in (*OUTPUTS[1:], "input_weight", "status")}
+    return {"omega_1": frame.omega_1.to_numpy().reshape(-1, 3)} | single
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", NAMES)
+def test_a_file_has_the_values_of_memory(whole, tmp_path, name):
+    sweep(path=tmp_path / name, chunk=7, statistics="mean")
+    for key, array in values(tmp_path / name).items():
+        assert np.array_equal(array, whole[key])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_arrays_of_a_file_are_those_of_memory(whole, tmp_path, name):
+    result = sweep(path=tmp_path / name, statistics=["mean", "percentiles(5, 50)"])
+    for key in (*OUTPUTS, "input_weight", "status", "omega_1_mean", "axis_z@end_mean"):
+        assert np.array_equal(result.array(key), whole[key])
+    assert result.array("omega_1_percentile").shape == (2, 3) and result.array("message").tolist() == [""] * 40
+    with pytest.raises(InputError, match="did you mean 'omega_1'"):
+        result.array("omega_11")
+
+
+def test_pandas_and_xarray_show_units(tmp_path):
+    for name in NAMES:
+        sweep(path=tmp_path / name, statistics="mean")
+    assert xarray.open_zarr(tmp_path / "a.zarr").omega_1.attrs["units"] == "rad/s"
+    frame = pandas.read_parquet(tmp_path / "a.parquet")
+    assert frame.attrs["units"]["energy@max"] == "J" and {"t", "input_q0", "message"} <= set(frame)
+    table = pandas.read_parquet(tmp_path / "a.parquet" / "_statistics.parquet")
+    mean = table[(table.name == "omega_1_mean") & (table.t == 0.5)].value.item()
+    assert mean == float(xarray.open_zarr(tmp_path / "a.zarr").omega_1_mean[1])
+
+
+class Stop(Exception):
+    pass
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sweep_that_stopped_goes_on_and_computes_nothing_twice(whole, tmp_path, name):
+    def stop_after(number):
+        def show(done, total):
+            if done >= number:
+                raise Stop
+
+        return show
+
+    for number in (10, 30):
+        with pytest.raises(Stop):
+            sweep(path=tmp_path / name, chunk=10, progress=stop_after(number))
+    calls = []
+    sweep(path=tmp_path / name, chunk=3, progress=lambda done, total: calls.append(done))
+    assert calls == [30, 40]  # the chunks are those of the first call
+    assert all(np.array_equal(array, whole[key]) for key, array in values(tmp_path / name).items())
+
+
+def test_a_chunk_without_a_status_is_computed_again(whole, tmp_path):
+    """A process that ends while it writes leaves values without a status, which is written last."""
+    path = tmp_path / "a.zarr"
+    sweep(path=path, chunk=10)
+    (path / "status" / "c" / "2").unlink()
+    (path / "omega_1" / "c" / "2" / "0").unlink()
+    calls = []
+    sweep(path=path, progress=lambda done, total: calls.append(done))
+    assert calls == [30, 40] and np.array_equal(values(path)["omega_1"], whole.omega_1)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_full_disk_loses_nothing(whole, tmp_path, name, monkeypatch):
+    store = symrot.sweeps.sweep.STORES[Path(name).suffix]
+    write, calls = store.write, []
+
+    def full(self, chunk):
+        calls.append(chunk.start)
+        if len(calls) == 3:
+            raise OSError(28, "No space left on device", str(self.path))
+        write(self, chunk)
+
+    monkeypatch.setattr(store, "write", full)
+    with pytest.raises(OSError, match="No space left"):
+        sweep(path=tmp_path / name, chunk=10)
+    sweep(path=tmp_path / name, chunk=10)
+    assert calls == [0, 10, 20, 20, 30]
+    assert all(np.array_equal(array, whole[key]) for key, array in values(tmp_path / name).items())
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [({"seed": 8}, "seed"), ({"count": 45}, "count"), ({"outputs": "omega_2"}, "output"), ({"t": [0.0, 1.0]}, "times"),
+     ({"vary": {"omega_1": "normal(0, 0.2)"}}, "vary"), ({"tolerance": 1e-5}, "tolerance")],
+)  # fmt: skip
+def test_results_of_another_sweep_are_refused(tmp_path, name, options, word):
+    sweep(path=tmp_path / name)
+    with pytest.raises(InputError, match=f"got those of a sweep with a different .*{word}.*; choose another name"):
+        sweep(path=tmp_path / name, **options)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_other_files_are_refused_and_stay(tmp_path, name):
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "letter.txt").write_text("dear reader")
+    with pytest.raises(InputError, match="got something else"):
+        sweep(path=tmp_path / name)
+    assert (tmp_path / name / "letter.txt").read_text() == "dear reader"
+
+
+def test_statistics_alone_leave_no_values(tmp_path):
+    path = tmp_path / "a.zarr"
+    for _ in range(2):  # the second call finds the sweep complete
+        result = sweep(path=path, statistics="envelope", keep="statistics")
+    assert result.count == 40 and "omega_1" not in result.to_xarray() and not (path / "omega_1").exists()
+
+
+@pytest.mark.parametrize("options", [{"statistics": "mean", "keep": "statistics"}, {"statistics": "envelope"}, {}])
+def test_values_that_were_removed_are_not_taken_for_results(tmp_path, options):
+    sweep(path=tmp_path / "a.zarr", statistics="envelope", keep="statistics")
+    with pytest.raises(InputError, match="the values of the trajectories were removed there"):
+        sweep(path=tmp_path / "a.zarr", **options)
+
+
+COMMAND = (
+    "import sys, symrot; from tests.sweeps.scenes import sweep; sys.stdout.reconfigure(line_buffering=True);"
+    "sweep(path=sys.argv[1], count=2000, chunk=20, workers=int(sys.argv[2]), progress=lambda done, total: print(done))"
+)
+
+
+def test_a_client_killed_at_three_places_loses_nothing(tmp_path):
+    path, places = tmp_path / "a.zarr", []
+    for _ in range(3):
+        with subprocess.Popen(
+            [sys.executable, "-c", COMMAND, str(path), "1"], stdout=subprocess.PIPE, text=True, env=os.environ
+        ) as process:
+            assert process.stdout is not None
+            places.append(int(process.stdout.readline()))
+            for _ in range(5):
+                process.stdout.readline()
+            process.kill()
+    assert places == sorted(places) and 0 < places[1] < places[2] < 2000
+    sweep(path=path, count=2000)
+    whole = sweep(count=2000, workers=1).to_xarray()
+    assert all(np.array_equal(array, whole[key]) for key, array in values(path).items())
+
+
+def test_a_killed_worker_costs_only_its_chunks(tmp_path):
+    """The process of a worker is killed after the first chunk; the sweep ends with all its rows."""
+    import multiprocessing
+
+    killed = []
+
+    def kill_once(done, total):
+        if done and not killed:
+            child = next(iter(multiprocessing.active_children()))
+            killed.append(child.pid)
+            child.kill()
+
+    result = sweep(count=200, chunk=10, workers=2, progress=kill_once)
+    assert killed and np.array_equal(result.to_xarray().omega_1, sweep(count=200).to_xarray().omega_1)
+
+
+def test_workers_end_with_a_killed_client(tmp_path):
+    with subprocess.Popen(
+        [sys.executable, "-c", COMMAND.replace("print(done)", "print(done, *[p.pid for p in "
+         "__import__('multiprocessing').active_children()])"), str(tmp_path / "a.zarr"), "2"],
+        stdout=subprocess.PIPE, text=True, env=os.environ,
+    ) as process:  # fmt: skip
+        assert process.stdout is not None
+        process.stdout.readline()
+        children = [int(word) for word in process.stdout.readline().split()[1:]]
+        process.kill()
+    assert len(children) == 2
+    for _ in range(500):
+        if not any(
+            Path(f"/proc/{child}/cmdline").exists() and Path(f"/proc/{child}/cmdline").read_bytes()
+            for child in children
+        ):
+            break
+        time.sleep(0.02)
+    else:
+        pytest.fail("a worker went on without its client")
+
+
+def test_a_dask_cluster_gives_the_same_bits(whole):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        result = sweep(scheduler=cluster.scheduler_address, chunk=5, statistics="mean")
+    xarray.testing.assert_identical(result.to_xarray(), whole)
+
+
+def test_a_scheduler_that_does_not_answer_is_one_sentence(monkeypatch):
+    pytest.importorskip("distributed")
+    from symrot.sweeps import cluster
+
+    monkeypatch.setattr(cluster, "SECONDS", 1)
+    with pytest.raises(InputError, match=r"--scheduler: expected the address of a Dask scheduler"):
+        sweep(scheduler="tcp://127.0.0.1:9")
+
+
+def test_the_description_names_what_identifies_a_sweep(tmp_path):
+    sweep(path=tmp_path / "a.parquet")
+    identity = json.loads((tmp_path / "a.parquet" / "_sweep.json").read_text())["identity"]
+    assert {"scene", "vary", "seed", "count", "times", "output"} <= set(identity)
+    assert ZarrStore.__doc__

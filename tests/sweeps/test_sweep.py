@@ -1,0 +1,146 @@
+"""Sweeps: each trajectory is that of its own scene; chunks and workers change no bit; failures keep their rows."""
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError
+from tests.sweeps.scenes import DAMPED_TOP, OUTPUTS, sweep
+
+xarray = pytest.importorskip("xarray")
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return sweep().to_xarray().load()
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 40])
+def test_any_chunks_give_the_same_bits(whole, chunk):
+    xarray.testing.assert_identical(sweep(chunk=chunk).to_xarray(), whole)
+
+
+def test_a_trajectory_is_the_motion_of_its_own_scene(whole):
+    for k in (0, 13, 39):
+        row = whole.isel(trajectory=k)
+        scene = DAMPED_TOP | {
+            "initial": {
+                "omega": [float(row.input_omega_1), "1/5", 20],
+                "attitude": {"quaternion": row.input_quaternion.values.tolist()},
+            },
+            "torque": [{"kind": "gravity", "weight": float(row.input_weight)}, DAMPED_TOP["torque"][1]],
+        }
+        motion = symrot.propagator(symrot.Scene.from_dict(scene), "dop853", 1e-12)(row.time.values)
+        for name, values in (
+            ("omega_1", motion.omega[:, 0]), ("axis_z@end", motion.axis[-1, 2]), ("energy@max", motion.energy.max())
+        ):  # fmt: skip
+            assert np.abs(row[name] - values).max() < 1e-5 * max(1, np.abs(values).max())  # tolerance 1e-6 of the sweep
+
+
+def test_outputs_have_units_frames_and_meanings(whole):
+    assert whole.omega_1.attrs == {
+        "units": "rad/s", "frame": "body", "long_name": "angular velocity, body components"
+    }  # fmt: skip
+    assert whole["energy@max"].attrs["units"] == "J" and whole.input_weight.attrs["units"] == "N"
+    assert whole["axis_z@end"].attrs["long_name"].endswith("at t = 1.0 s")
+
+
+def test_outputs_at_one_time_need_no_other_samples(whole):
+    ends = sweep(outputs=["axis_z@end", "omega_1@0.5"]).to_xarray()
+    assert np.allclose(ends["axis_z@end"], whole["axis_z@end"], rtol=0, atol=1e-13)
+    assert np.allclose(ends["omega_1@0.5"], whole.omega_1[:, 1], rtol=0, atol=1e-13)
+
+
+def test_a_mass_changes_inertia_and_weight():
+    """Torque and inertia are proportional to the mass, so that the motion of a heavy top does not depend on it."""
+    result = symrot.sweep(
+        "heavy_top_loops", {"body.mass": [0.25, 0.5, 1.0]}, outputs=["axis_x@end", "energy@end"], workers=1
+    ).to_xarray()
+    assert np.ptp(result["axis_x@end"].values) < 1e-9
+    assert np.allclose(result["energy@end"] / result["input_body.mass"], result["energy@end"][1] / 0.5, rtol=1e-12)
+
+
+def test_a_number_in_the_scene_file_gives_the_motion_of_that_file():
+    result = symrot.sweep(
+        DAMPED_TOP,
+        {"initial.attitude.angles[1]": [0.5, 1.0], "torque[1].linear": [0.25, 0.5], "body.principal[2]": [0.75]},
+        outputs="omega_1@end", workers=1, tolerance=1e-10,
+    ).to_xarray()  # fmt: skip
+    for k, (angle, linear) in enumerate([(0.5, 0.25), (0.5, 0.5), (1.0, 0.25), (1.0, 0.5)]):
+        scene = DAMPED_TOP | {
+            "body": DAMPED_TOP["body"] | {"principal": [1, 1, 0.75]},
+            "initial": DAMPED_TOP["initial"] | {"attitude": {"sequence": "ZXZ", "angles": [0, angle, 0]}},
+            "torque": [DAMPED_TOP["torque"][0], {"kind": "damping", "linear": linear}],
+        }
+        motion = symrot.propagator(symrot.Scene.from_dict(scene), "dop853", 1e-12)([0.0, 1.0])
+        assert abs(result["omega_1@end"][k] - motion.omega[-1, 0]) < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("vary", "reason"),
+    [
+        ({"I_xx": [0.3, 1.0, 2.0, 1.1]}, "moments of inertia none of which exceeds the sum of the other two"),
+        ({"body.principal[0]": [0.3, 1.0, 2.0, 1.1]}, "moments of inertia none of which exceeds the sum"),
+        ({"weight": [-1.0, 1.0, 0.0, 2.0]}, "expected positive values in N"),
+    ],
+)
+def test_a_trajectory_without_a_body_keeps_its_row_and_its_reason(vary, reason):
+    result = symrot.sweep(DAMPED_TOP, vary, outputs=["omega_1", "omega_3@end"], workers=1)
+    data = result.to_xarray()
+    assert result.impossible == 2 and data.status.values.tolist() == [-2, 0, -2, 0]
+    assert np.isnan(data.omega_1[::2]).all() and not np.isnan(data.omega_1[1::2]).any()
+    assert reason in str(data.message.values[0]) and data.message.values[1] == ""
+    assert [row for row, _ in result.reasons] == [0, 2] and "trajectory 0" not in result.reasons[1][1]
+    alone = symrot.sweep(DAMPED_TOP, {next(iter(vary)): [1.0]}, outputs="omega_1", workers=1).to_xarray()
+    if 1.0 in next(iter(vary.values())):
+        assert np.array_equal(data.omega_1[1], alone.omega_1[0])
+
+
+def test_zeros_and_equal_moments_in_other_rows_change_no_bit():
+    """The equations of a row are chosen by its own constants, also where a chunk holds rows of other kinds."""
+    vary = {"linear_3": [0.0, 0.1], "I_xy": [0.0, 0.05], "I_xx": [1.0, 1.1]}
+    together, alone = (
+        symrot.sweep(DAMPED_TOP, vary, outputs=["omega", "quaternion"], workers=1, chunk=chunk).to_xarray()
+        for chunk in (8, 1)
+    )
+    xarray.testing.assert_identical(together, alone)
+
+
+def test_statistics_are_those_of_all_values(whole):
+    result = sweep(statistics=["percentiles(5, 50, 95)", "envelope"], chunk=9).to_xarray()
+    for name in OUTPUTS:
+        assert np.array_equal(result[f"{name}_percentile"], np.percentile(whole[name], [5, 50, 95], axis=0))
+        assert np.array_equal(result[f"{name}_max"], whole[name].max(axis=0))
+    only = sweep(statistics="envelope", keep="statistics").to_xarray()
+    assert "omega_1" not in only and np.array_equal(only.omega_1_min, result.omega_1_min)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"outputs": "omga_1@end"}, "output: expected one of omega, .*did you mean 'omega_1'?"),
+        ({"outputs": "omega_1@ned"}, "did you mean 'end'?"),
+        ({"outputs": "omega_1@7"}, "expected a time from 0.0 to 1.0 s after @"),
+        ({"outputs": ["omega", "omega_1"]}, "got omega_1 a second time"),
+        ({"outputs": []}, "at least one output"),
+        ({"outputs": ["euler_ZXZ_1", "euler_ZYX_1"]}, "one sequence"),
+        ({"outputs": "euler"}, "output: expected one of"),
+        ({"method": "tayler"}, "method: expected one of"),
+        ({"tolerance": 2}, "tolerance: expected a number"),
+        ({"workers": 0}, "workers: expected a whole number"),
+        ({"chunk": 0}, "chunk: expected a whole number"),
+        ({"keep": "statistics"}, "keep: expected statistics"),
+        ({"keep": "some"}, "keep: expected one of"),
+        ({"t": [[0.0]]}, "t: expected times"),
+        ({"path": "a.csv"}, "ends in .zarr, .parquet"),
+        ({"path": "nowhere/a.zarr"}, "existing folder"),
+        ({"count": 1e9}, "path: expected a file to write"),
+        ({"vary": [1]}, "vary: expected a dict"),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_one_sentence(options, message):
+    with pytest.raises(InputError) as error:
+        sweep(**options)
+    assert "\n" not in str(error.value)
+    for part in message.split(".*"):
+        assert part in str(error.value)
