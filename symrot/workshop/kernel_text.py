@@ -122,8 +122,9 @@ class LibraryText(KernelText):
 
     @cached_property
     def _c(self) -> tuple[str, str]:
-        """Return the C source and its header; operations are printed and bounded first, because the head states their
-        bounds.
+        """Return the C source and its header file.
+
+        The rounding errors of the operations are bounded first, because the opening comment states the bounds.
         """
         program = kernel_program(self.name)
         description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))

@@ -292,7 +292,7 @@ def _original(rest: str, words: str) -> str:
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a text can mean: ``x'`` is the rate of x if it ``is_rate``, otherwise a name by itself."""
+    """Yield the names that a text can stand for; ``x'`` is the rate of x if ``is_rate``, otherwise a name."""
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare

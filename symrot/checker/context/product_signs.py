@@ -33,7 +33,7 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Return a verdict on the changed claim as one on the claim: with its signs in the repairs, and a note."""
+    """Turn a verdict on the claim with changed signs into one on the claim itself; a note says so."""
     repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
     return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
 

@@ -73,7 +73,7 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
 
 
 def _in_dimensions(tree: Node, size: Size) -> Node:
-    """Return a formula with the dimensions of symrot in place of the letters of an author."""
+    """Return a formula in which the dimensions that symrot uses, such as the radius, replace those of the author."""
     if tree.kind == "name" and tree.value in size.letters:
         return product([number(1 / size.factor), Node("name", size.letters[str(tree.value)])])
     return replace(tree, args=tuple(_in_dimensions(child, size) for child in tree.args))

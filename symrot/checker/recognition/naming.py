@@ -241,7 +241,7 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return a repair of an equation, solved for a letter, with its terms on the sides where the claim has them."""
+    """Return a corrected equation, found solved for one letter, with each term on the side where the claim has it."""
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
@@ -594,7 +594,7 @@ def _plain(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how many of component and frame a known formula has other than the name of a quantity says: 0, 1 or 2."""
+    """Count the mismatches between a known formula and the name of a quantity: the component, the frame (0, 1 or 2)."""
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip

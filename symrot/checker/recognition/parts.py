@@ -300,7 +300,7 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield every other symbol in place of a symbol."""
+    """Yield, as replacements of a symbol, all other symbols of the formula."""
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
         return
