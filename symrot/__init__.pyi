@@ -11,6 +11,10 @@ from symrot.ensemble.ensemble import Ensemble, EnsembleMember, EnsembleStats, pr
 from symrot.errors import CertificateError, CompilerError, InputError, PropagationError, SymrotError
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Counterexample
+from symrot.exchange.inertial import Inertial
+from symrot.exchange.mesh import mesh
+from symrot.exchange.robot import Link, link, links
+from symrot.exchange.robot_text import write_link
 from symrot.exercises.exercise import Datum, Equation, Exercise, Question
 from symrot.exercises.grading.grade import grade
 from symrot.exercises.grading.mark import Grades, Mark
@@ -82,11 +86,13 @@ __all__ = [
     "ExerciseSheet",
     "Grades",
     "Identification",
+    "Inertial",
     "Initial",
     "InputError",
     "Invariant",
     "LargestBox",
     "Limit",
+    "Link",
     "LockedPoint",
     "Mark",
     "Output",
@@ -135,8 +141,11 @@ __all__ = [
     "in_notebook",
     "kernel_names",
     "largest_box",
+    "link",
+    "links",
     "load",
     "load_scene",
+    "mesh",
     "normal_form",
     "plan",
     "plot",
@@ -154,4 +163,5 @@ __all__ = [
     "solid",
     "sweep",
     "to_sympy",
+    "write_link",
 ]

@@ -21,6 +21,7 @@ ROOMS = (  # from left to right: a module imports, anywhere, only from its own r
     {"exact"},
     {"proof"},
     {"kinematics", "inertia"},
+    {"exchange"},
     {"dynamics"},
     {"catalogue", "textbook", "scene"},
     {"checker"},

@@ -14,6 +14,7 @@ from typing import Any, NoReturn, TextIO
 
 import symrot
 from symrot.cli import certify as cli_certify
+from symrot.cli import exchange as cli_exchange
 from symrot.cli import exercises as cli_exercises
 from symrot.cli import scenes as cli_scenes
 from symrot.cli import sweeps as cli_sweeps
@@ -493,6 +494,7 @@ COMMANDS: dict[str, Command] = {
     "show": ("write a page that plays a scene and lets the reader change it", _show, _show_arguments),
     **cli_sweeps.COMMANDS,
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
+    **cli_exchange.COMMANDS,
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),

@@ -1,7 +1,8 @@
 """Bodies of scenes: the inertia, the point of rotation, and a check that such a body can exist.
 
-The inertia is given in exactly one of four ways: by ``shape`` with dimensions and mass or density; by
-``[[body.part]]``, the parts of which the body is composed; by its ``principal`` moments; or by ``inertia``, the tensor.
+The inertia is given in exactly one of five ways: by ``shape`` with dimensions and mass or density; by
+``[[body.part]]``, the parts of which the body is composed; by ``mesh``, the name of a file; by its ``principal``
+moments; or by ``inertia``, the tensor.
 The result consists of exact numbers (Fractions) and refers to the axes in which the body was given.
 """
 
@@ -12,18 +13,20 @@ from typing import Any, NamedTuple
 from symrot.errors import nearest
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import NEGLIGIBLE
-from symrot.inertia.composite import Part, mass_properties
+from symrot.inertia.composite import MassProperties, Part, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
 from symrot.scene.attitude import Matrix, Vector, read_attitude
+from symrot.scene.folders import Folders
+from symrot.scene.mesh_body import Facet, read_mesh_table
 from symrot.scene.reader import Entry, Reader, choice, fail, flag, number, read_table, table, text, vector
 
 __all__ = ["Body", "read_body"]
 
 ABOUT = ("center_of_mass", "fixed_point")
-INERTIA_SOURCES = ("shape", "part", "principal", "inertia")
-EXPECTED_SOURCE = "exactly one of shape, [[body.part]], principal, inertia"
+INERTIA_SOURCES = ("shape", "part", "mesh", "principal", "inertia")
+EXPECTED_SOURCE = "exactly one of shape, [[body.part]], mesh, principal, inertia"
 ASYMMETRY = Fraction(1, 10**12)
 """Largest difference of I_xy and I_yx, relative to the largest moment, of a tensor that counts as symmetric."""
 
@@ -61,7 +64,9 @@ class Body(NamedTuple):
     parts : tuple of Part
         The shapes of which the body consists, for pictures; empty if only its inertia is known.
     origin : tuple of 3 Fraction
-        The point of rotation, m, in the axes in which the parts are placed.
+        The point of rotation, m, in the axes in which the parts or facets are placed.
+    facets : tuple of triangles
+        The surface of a body given by a small mesh, for pictures: the corners, m, of each triangle.
 
     Examples
     --------
@@ -79,10 +84,20 @@ class Body(NamedTuple):
     principal: Principal
     parts: tuple[Part, ...] = ()
     origin: Vector = _ZERO
+    facets: tuple[Facet, ...] = ()
 
 
-def read_body(value: Any, where: str) -> Body:
+def read_body(value: Any, where: str, folders: Folders | None = None) -> Body:
     """Return the body that the table ``[body]`` of a scene describes.
+
+    Parameters
+    ----------
+    value : mapping
+        The table.
+    where : str
+        Its place, for error messages.
+    folders : Folders, optional
+        Where the file of a mesh may be; default: the current folder.
 
     Raises
     ------
@@ -96,7 +111,7 @@ def read_body(value: Any, where: str) -> Body:
         if not sources:
             fail(where, EXPECTED_SOURCE, entries, _nearest_source(entries) or "none of them is given")
         fail(where, EXPECTED_SOURCE, entries, f"{' and '.join(sources)} are given")
-    body = _READERS[sources[0]](entries, where)
+    body = _READERS[sources[0]](entries, where, folders or Folders())
     _require_turnable(body, entries.get(sources[0]), f"{where}.{sources[0]}")
     return body
 
@@ -184,7 +199,7 @@ def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, sou
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
 
 
-def _read_principal(value: Mapping[str, Any], where: str) -> Body:
+def _read_principal(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     _no_fixed_point(value, where)
     values = read_table(value, where, {"principal": Entry(_three_moments, required=True), **_MOMENT_ENTRIES}, "a body")
     a, b, c = values["principal"]
@@ -194,7 +209,7 @@ def _read_principal(value: Mapping[str, Any], where: str) -> Body:
     )
 
 
-def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
+def _read_tensor(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     _no_fixed_point(value, where)
     values = read_table(value, where, {"inertia": Entry(_tensor, required=True), **_MOMENT_ENTRIES}, "a body")
     return _body_of_moments(values["inertia"], values, where, "a given inertia tensor")
@@ -297,7 +312,11 @@ def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source
 
     ``source`` describes the body; ``of_parts`` is the place of its parts in the scene, for errors.
     """
-    properties = mass_properties(parts, of_parts)
+    return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
+
+
+def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
+    """Return a body with given mass properties, about its centre of mass or about the fixed point."""
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         fail(
@@ -318,10 +337,15 @@ def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source
     inertia = _settled(inertia)
     description = values["name"] or source
     principal = principal_axes(inertia, where)
-    return Body(properties.mass, inertia, center, about, description, principal, tuple(parts), origin)
+    return Body(properties.mass, inertia, center, about, description, principal, (), origin)
 
 
-def _read_shape(value: Mapping[str, Any], where: str) -> Body:
+def _read_mesh(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
+    body, values = read_mesh_table(value, where, _PLACED, Entry(_density("kg/m^3")), folders)
+    return _about_point(body.properties, values, where, "mesh")._replace(facets=body.facets)
+
+
+def _read_shape(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     part, values = _read_shape_table(value, where, _PLACED)
     return _placed([part], values, where, part.shape.replace("_", " "), where)
 
@@ -342,15 +366,16 @@ def _parts(value: Any, where: str) -> list[Part]:
     return [_read_shape_table(item, f"{where}[{index}]", _PART)[0] for index, item in enumerate(value)]
 
 
-def _read_parts(value: Mapping[str, Any], where: str) -> Body:
+def _read_parts(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     values = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
     parts: list[Part] = values["part"]
     return _placed(parts, values, where, f"body of {len(parts)} parts", f"{where}.part")
 
 
-_READERS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
+_READERS: dict[str, Callable[[Mapping[str, Any], str, Folders], Body]] = {
     "shape": _read_shape,
     "part": _read_parts,
+    "mesh": _read_mesh,
     "principal": _read_principal,
     "inertia": _read_tensor,
 }

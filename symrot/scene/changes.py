@@ -50,7 +50,7 @@ EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
 RATES = ("omega_1", "omega_2", "omega_3")
 TENSOR = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 INDEX = {"x": 0, "y": 1, "z": 2}
-NO_DIMENSIONS = ("shape", "part", "principal", "inertia", "about", "fixed_point", "name")
+NO_DIMENSIONS = ("shape", "part", "mesh", "flip", "principal", "inertia", "about", "fixed_point", "name")
 
 _STEP = re.compile(r"([A-Za-z0-9_-]+)|\[(\d{1,6})\]")
 _PREFIXED = re.compile(r"torque(\d{1,4})_(\w+)")
@@ -204,7 +204,7 @@ def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
     body = scene.content["body"]
     if key == "mass" and "part" not in body:
         yield Place(("body", "mass"))
-    elif key == "density" and "shape" in body:
+    elif key == "density" and ("shape" in body or "mesh" in body):
         yield Place(("body", "density"))
     elif key in body and key not in NO_DIMENSIONS and key not in SHORT:
         yield Place(("body", key))

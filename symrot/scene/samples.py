@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, NoReturn
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.files.reading import read_input
+from symrot.scene.folders import Folders
 from symrot.scene.reader import Entry, choice, fail, number, read_table, text, vector
 
 __all__ = ["COLUMNS", "LARGEST_FILE", "MOST_SAMPLES", "Table", "read_samples"]
@@ -138,7 +139,8 @@ def read_samples(
             fail(place, f"at most {MOST_SAMPLES} samples", len(times))
     else:
         place, rows = f"{where}.file: {values['file']}", 2
-        times, moments = _read_file(_allowed_file(values["file"], folder, table_folders, f"{where}.file"), place)
+        path = Folders(folder, table_folders).file(values["file"], f"{where}.file", "a CSV file")
+        times, moments = _read_file(path, place)
     _check(times, values["switching_times"], place, rows)
     _check_slopes(times, moments, place)
     twice = {after for before, after in pairwise(times) if after == before}
@@ -182,27 +184,6 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
             fail(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
                      f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
-
-
-def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
-    """Return the path of the file of samples that a scene names; raise InputError if it is outside the allowed folders.
-
-    Links are followed before the check. A scene may come from an untrusted source, and must not make symrot open any
-    other file of the user and quote it in a message.
-    """
-    if isinstance(table_folders, str | Path):
-        table_folders = (table_folders,)
-    if not file.strip() or "\\" in file:
-        fail(where, "the name of a CSV file, with / between folders", file)
-    try:
-        path = (folder / file).resolve()
-        inside = any(path.is_relative_to(Path(each).resolve()) for each in (folder, *table_folders))
-    except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle
-        fail(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
-    if not inside:
-        fail(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
-                 "load_scene(.., table_folders=[DIR]), allows files in another folder")  # fmt: skip
-    return path
 
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:

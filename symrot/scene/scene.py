@@ -14,11 +14,12 @@ import symrot
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
-from symrot.scene.body import Body
+from symrot.scene.body import Body, read_body
 from symrot.scene.changes import changed, replaces_shapes
 from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
-from symrot.scene.reader import fail, read_table, table
+from symrot.scene.folders import Folders
+from symrot.scene.reader import Entry, fail, read_table, table
 from symrot.scene.samples import Table, read_samples
 from symrot.scene.tables import SCHEMA, TOP, Initial, Output, Span
 from symrot.scene.torque import Torque, read_torque
@@ -367,8 +368,10 @@ def _read_scene(
 ) -> Scene:
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
-    values = read_table(content, where, TOP, "a scene")
     folder = Path() if path is None else Path(path).parent
+    folders = Folders(folder, table_folders)
+    body = Entry(lambda value, place: read_body(value, place, folders), required=True)
+    values = read_table(content, where, {**TOP, "body": body}, "a scene")
     torques, samples = _read_torques(
         values["torque"], values["body"], values["span"], folder, f"{where}torque", table_folders
     )

@@ -40,12 +40,15 @@ class Patch(NamedTuple):
         Size of the grid.
     is_hole : bool
         Whether the part is subtracted from the body.
+    is_mesh : bool
+        Whether the patch is a mesh, no grid: each row is a triangle, given by its three corners.
     """
 
     points: list[Point]
     rows: int
     columns: int
     is_hole: bool = False
+    is_mesh: bool = False
 
 
 def patches(body: Body) -> list[Patch]:
@@ -66,6 +69,8 @@ def patches(body: Body) -> list[Patch]:
     >>> len(patches(symrot.load_scene("tumbling_prism").body))
     6
     """
+    if body.facets:
+        return [_of_facets(body)]
     if not body.parts:
         return _equivalent_box(body)
     return [patch for part in body.parts for patch in _of_part(part, body)]
@@ -73,11 +78,18 @@ def patches(body: Body) -> list[Patch]:
 
 def how_drawn(body: Body) -> str:
     """Return a sentence that a body is drawn as a box, if only its inertia is known; otherwise an empty text."""
-    if body.parts:
+    if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
         return "The body is drawn as a box with the proportions of its moments about the fixed point."
     return "The body is drawn as the uniform box with its moments."
+
+
+def _of_facets(body: Body) -> Patch:
+    """Return the triangles of a mesh as one patch."""
+    start = [float(value) for value in body.origin]
+    points = [(x - start[0], y - start[1], z - start[2]) for facet in body.facets for x, y, z in facet]
+    return Patch(points, len(body.facets), 3, is_mesh=True)
 
 
 def _of_part(part: Part, body: Body) -> Iterator[Patch]:

@@ -159,7 +159,9 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
 
 
 def _polygons(patch: Patch) -> list[Floats]:
-    """Return the quadrilaterals of a patch, each of shape (4, 3); an empty list for curves and separate points."""
+    """Return the polygons of a patch, each of shape (4, 3), or (3, 3) in a mesh; none for curves and points."""
+    if patch.is_mesh:
+        return list(np.array(patch.points).reshape(-1, 3, 3))
     if patch.rows < 2 or patch.is_hole:
         return []
     grid = np.array(patch.points).reshape(patch.rows, patch.columns, 3)
@@ -176,10 +178,13 @@ def _curves(patch: Patch) -> list[list[Point]]:
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness of a quadrilateral.
+    """Return the brightness of a polygon.
 
     The quarters of a round surface differ in brightness, so that its spin can be seen.
     """
+    if patch.is_mesh:
+        x, y, _ = np.array(patch.points[3 * place : 3 * place + 3]).mean(axis=0)
+        return 0.72 if x * y < 0 else 0.95
     across = max(patch.columns, patch.rows) - 1
     column = place % (patch.columns - 1) if patch.columns > 2 else place // max(patch.columns - 1, 1)
     return 0.72 if int(4 * column / max(across, 1)) % 2 else 0.95

@@ -82,7 +82,15 @@ export class Drawing {
                 return;
             }
             const geometry = new BufferGeometry(), index = [], shade = [];
-            for (let i = 0; i < patch.rows; ++i) {
+            for (let i = 0; patch.mesh && i < count; ++i) {
+                const first = 9*Math.floor(i/3);                        // the quadrant of the triangle's centre
+                const x = points[first] + points[first + 3] + points[first + 6];
+                const y = points[first + 1] + points[first + 4] + points[first + 7];
+                const tone = x*y < 0 ? 0.72 : 1;
+                shade.push(tone, tone, tone);
+                index.push(i);
+            }
+            for (let i = 0; !patch.mesh && i < patch.rows; ++i) {
                 for (let j = 0; j < patch.columns; ++j) {
                     const turning = patch.columns > 2 ? j/(patch.columns - 1) : patch.rows > 2 ? i/(patch.rows - 1) : number/6;
                     const tone = Math.floor(4*turning + 1e-9) % 2 ? 0.72 : 1;    // quarters, so that a spin can be seen

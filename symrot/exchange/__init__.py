@@ -1,0 +1,1 @@
+"""Bodies from files of other programs: meshes and robot descriptions."""

@@ -1,0 +1,205 @@
+"""Tests that a closed surface is the boundary of a body: winding numbers along lines, and pairs of crossing triangles.
+
+A surface bounds a body if each point of space is either outside (winding number 0) or inside it (winding number 1).
+A line through the body shows the winding numbers of all points on it. A search of all pairs of triangles shows each
+proper crossing; for large meshes only the lines are affordable.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.exchange.surface import Surface, shells
+
+__all__ = ["require_boundary"]
+
+Floats = NDArray[np.float64]
+
+MOST_TESTS = 50_000_000
+"""Number of tests of a triangle against a line; it limits the number of lines."""
+
+MOST_PAIRS = 5_000_000
+"""Number of pairs of triangles, overlapping along one axis, up to which all pairs are searched for crossings."""
+
+MOST_SEARCHED = 200_000
+"""Number of triangles up to which a search of pairs is tried."""
+
+MOST_SHELLS = 1000
+NEAR = 1e-12  # distance, relative to the size of the mesh, below which two crossings of a line count as one place
+THIN = 1e-14  # area, relative to the size squared, below which a line may pass through an edge
+PLACES = ((0.36, 0.33), (0.21, 0.43), (0.55, 0.17))  # of a line within its triangle, tried in turn
+AXES = ((1, 2, 0), (2, 0, 1), (0, 1, 2))  # depth last
+
+
+class _Boxes(NamedTuple):
+    """The smallest and the largest coordinates of each triangle, shape (3 axes, number of triangles)."""
+
+    low: Floats
+    high: Floats
+
+    def around(self, axis: int, value: Any) -> NDArray[np.bool_]:
+        """Return for each triangle whether its range of a coordinate contains the value."""
+        within: NDArray[np.bool_] = self.low[axis] <= value
+        within &= self.high[axis] >= value
+        return within
+
+
+def require_boundary(surface: Surface, where: str) -> str:
+    """Return a sentence about the tests that a closed surface passed; raise InputError if it crosses itself.
+
+    The surface may have several shells: parts beside each other, and cavities, whose normals point into the cavity.
+    """
+    numbers = shells(surface)
+    count = int(numbers.max()) + 1
+    if count > MOST_SHELLS:
+        raise InputError(f"{where}: expected at most {MOST_SHELLS} shells (parts without common vertices), got {count}")
+    size = float(np.ptp(surface.vertices, axis=0).max())
+    columns = np.ascontiguousarray(((surface.vertices - surface.vertices.min(axis=0)) / size).T)
+    corners = np.empty((3, 3, len(surface.triangles)))  # corner, axis, triangle
+    for corner in range(3):
+        index = np.ascontiguousarray(surface.triangles[:, corner])
+        for axis in range(3):
+            np.take(columns[axis], index, out=corners[corner, axis])
+    boxes = _Boxes(corners.min(axis=0), corners.max(axis=0))
+    chosen = _chosen(corners, numbers, count)
+    lines = sum(_passes(corners, boxes, int(triangle), where, surface) for triangle in chosen)
+    searched = len(surface.triangles) <= MOST_SEARCHED and _search_pairs(surface, boxes, where)
+    parts = f"{count} shells" if count > 1 else "one shell"
+    pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
+    return f"closed, {parts}; inside and outside agree along {lines} of {len(chosen)} lines; {pairs}"
+
+
+def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Return the triangles through which lines are drawn: the largest of each shell, and others at equal intervals."""
+    edges = corners[1] - corners[0], corners[2] - corners[0]
+    areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
+    order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
+    last = np.flatnonzero(np.diff(numbers[order], append=count)) if count > 1 else np.array([0])
+    largest = order[last]
+    total = len(areas)
+    others = np.linspace(0, total - 1, max(1, min(total, MOST_TESTS // total))).astype(np.int64)
+    others = others[areas[others] > 0]
+    return np.unique(np.concatenate([largest, others]))
+
+
+def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
+    """Return 1 if all points on a line through a triangle are outside or inside, 0 if the line meets an edge."""
+    own = corners[:, :, triangle]
+    normal = np.cross(own[1] - own[0], own[2] - own[0])
+    axes = AXES[int(np.abs(normal).argmax())]
+    for share, other in PLACES:
+        target = own[0] + share * (own[1] - own[0]) + other * (own[2] - own[0])
+        profile = _profile(corners, boxes, target, axes)
+        if profile is not None:
+            depths, windings = profile
+            wrong = np.flatnonzero((windings != 0) & (windings != 1))
+            if len(wrong):
+                _refuse(int(windings[wrong[0]]), target, axes[2], depths, int(wrong[0]), where, surface)
+            return 1
+    return 0
+
+
+def _profile(
+    corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
+) -> tuple[Floats, NDArray[np.int64]] | None:
+    """Return the depths at which a line crosses the surface and the winding number behind each; None near an edge."""
+    u, v, depth = axes
+    near = np.flatnonzero(boxes.around(u, target[u]))
+    near = near[_Boxes(boxes.low[:, near], boxes.high[:, near]).around(v, target[v])]
+    candidates = corners[:, :, near]
+    x, y = candidates[:, u] - target[u], candidates[:, v] - target[v]
+    areas = np.stack([x[i] * y[j] - x[j] * y[i] for i, j in ((1, 2), (2, 0), (0, 1))])
+    inside = (areas > THIN).all(axis=0) | (areas < -THIN).all(axis=0)
+    outside = (areas > THIN).any(axis=0) & (areas < -THIN).any(axis=0)
+    if not np.all(inside | outside):
+        return None
+    hits, areas = candidates[:, :, inside], areas[:, inside]
+    depths = (areas * hits[:, depth]).sum(axis=0) / areas.sum(axis=0)
+    order = np.argsort(depths, kind="stable")
+    windings = -np.cumsum(np.sign(areas[0, order]).astype(np.int64))
+    ends = np.flatnonzero(np.append(np.diff(depths[order]) > NEAR, True))  # the last crossing at each place
+    return depths[order][ends], windings[ends]
+
+
+def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int, where: str, surface: Surface) -> None:
+    point = target.copy()
+    point[axis] = (depths[index] + depths[min(index + 1, len(depths) - 1)]) / 2
+    size = float(np.ptp(surface.vertices, axis=0).max())
+    place = ", ".join(f"{x:.6g}" for x in surface.vertices.min(axis=0) + size * point)
+    reason = "part of it is turned inside out" if winding < 0 else "parts overlap, or a cavity has its normals outwards"
+    raise InputError(
+        f"{where}: expected a surface that does not cross itself, with each point outside or inside once, got a "
+        f"winding number of {winding} at ({place}): {reason}"
+    )
+
+
+# --- pairs of triangles -----------------------------------------------------------------------------------------------
+
+
+def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
+    """Return whether all pairs of triangles were searched; raise InputError for two that cross.
+
+    A crossing is proper: an edge of one triangle passes through the interior of another with which it shares no vertex.
+    Triangles that only touch, up to rounding errors, do not cross.
+    """
+    low, high = boxes
+    axis = int(np.argmin((high - low).mean(axis=1)))
+    order = np.argsort(low[axis], kind="stable")
+    last = np.searchsorted(low[axis, order], high[axis, order], side="right")
+    counts = last - np.arange(len(order)) - 1
+    if int(counts.sum()) > MOST_PAIRS:
+        return False
+    first = np.repeat(np.arange(len(order)), counts)
+    starts = np.repeat(np.cumsum(counts) - counts, counts)
+    second = first + 1 + np.arange(len(first)) - starts
+    i, j = order[first], order[second]
+    overlap = np.ones(len(i), bool)
+    for other in range(3):
+        if other != axis:
+            overlap &= (low[other, i] <= high[other, j]) & (low[other, j] <= high[other, i])
+    i, j = i[overlap], j[overlap]
+    shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).any(axis=(1, 2))
+    i, j = i[~shared], j[~shared]
+    for one, other in ((i, j), (j, i)):
+        crossings = _pierces(surface, one, other)
+        if crossings is not None:
+            point = ", ".join(f"{x:.6g}" for x in surface.vertices[surface.triangles[crossings]].mean(axis=0))
+            raise InputError(
+                f"{where}: expected a surface that does not cross itself, got triangles that cross near ({point}); "
+                "join the parts by a Boolean union in your mesh program"
+            )
+    return True
+
+
+def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
+    """Return a triangle of which an edge pierces the interior of the other triangle of its pair, or None."""
+    corners = surface.triangles
+    a, b, c = (corners[through, k] for k in range(3))
+    heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
+    for k in range(3):
+        m = (k + 1) % 3
+        split = np.flatnonzero(heights[k] * heights[m] < 0)
+        if not len(split):
+            continue
+        p, q = corners[edges_of[split], k], corners[edges_of[split], m]
+        signs = [_sides(surface, p, q, x[split], y[split]) for x, y in ((a, b), (b, c), (c, a))]
+        within = (signs[0] == signs[1]) & (signs[1] == signs[2]) & (signs[0] != 0)
+        if within.any():
+            return int(edges_of[split[int(within.argmax())]])
+    return None
+
+
+def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
+    """Return on which side of the plane (a, b, c) each vertex d is; 0 if rounding errors could change the side."""
+    p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
+    u, v, w = p - s, q - s, r - s
+    products = np.stack([u[:, i] * (v[:, j] * w[:, k]) for i, j, k in _PERMUTATIONS])
+    value = products[:3].sum(axis=0) - products[3:].sum(axis=0)
+    bound = np.abs(products).sum(axis=0) * 2.0**-48
+    signs: NDArray[np.int64] = np.where(np.abs(value) <= bound, 0, np.sign(value)).astype(np.int64)
+    return signs
+
+
+_PERMUTATIONS = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (1, 0, 2), (2, 1, 0))

@@ -1,0 +1,252 @@
+"""Mass, centre of mass and inertia of the polyhedron that a mesh file describes."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.errors import InputError
+from symrot.exchange.crossing import require_boundary
+from symrot.exchange.inertial import Inertial
+from symrot.exchange.mesh_file import read_surface
+from symrot.exchange.surface import Surface, require_closed
+from symrot.exchange.volume_moments import Exponents, VolumeMoments, approximate_moments, exact_moments, exponents
+from symrot.formula.exact_numbers import read, show
+from symrot.formula.polynomial import constant, generator
+from symrot.formula.tree import parse
+from symrot.inertia.integration import density_polynomial
+from symrot.inertia.principal import principal_axes, require_admissible
+from symrot.inertia.tensor import inertia_of_second_moments
+
+__all__ = ["MeshBody", "mesh", "polyhedron", "read_mesh"]
+
+MOST_EXACT = 200_000
+"""Number of triangles times number of integrals up to which integrals are always exact."""
+
+LARGEST_WORK = 30_000_000
+"""Number of triangles times number of integrals up to which exact integrals are an alternative to doubles."""
+
+LARGEST_ERROR = Fraction(1, 10**12)
+"""Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly."""
+
+LARGEST_SHARE = Fraction(1, 10**6)
+"""Largest error of the tensor, relative to the smallest second moment, so that thin bodies stay possible bodies."""
+
+Rows = tuple[tuple[Any, ...], ...]
+
+
+class MeshBody(NamedTuple):
+    """The mass properties of a mesh, and its surface in the unit of the file."""
+
+    inertial: Inertial
+    surface: Surface
+    scale: Fraction
+
+
+class _Body(NamedTuple):
+    """Integrals of a density over a polyhedron, about a centre, each with a bound of its error."""
+
+    mass: tuple[Fraction, Fraction]
+    first: tuple[tuple[Fraction, Fraction], ...]
+    second: tuple[tuple[tuple[Fraction, Fraction], ...], ...]
+    center: tuple[Fraction, ...]
+    volume: Fraction
+
+
+def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any = 1, flip: bool = False) -> Inertial:
+    """Return mass, centre of mass and inertia of the body that a closed mesh bounds.
+
+    The result is right for the polyhedron to 1e-12, and exact for meshes of up to 20 000 triangles.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file in the format STL, OBJ, PLY or GLB. All bodies in it form one rigid body.
+    mass : number, optional
+        Mass of the uniform body, kg. Exactly one of mass and density is needed.
+    density : number or str, optional
+        Density, kg/m^3: a positive number, or a polynomial in x, y, z, which are in m in the axes of the file.
+    scale : number
+        Length of the unit of the file, m: ``"1/1000"`` for a mesh in mm.
+    flip : bool
+        Whether to reverse the orientation of all triangles, for a mesh that is turned inside out.
+
+    Returns
+    -------
+    Inertial
+        In the axes of the file; ``error`` bounds the relative error, ``checks`` says which tests the surface passed.
+
+    Raises
+    ------
+    InputError
+        If trimesh is not installed, if the file is not a mesh, or if the mesh is not closed, turned inside out, without
+        volume, or found to cross itself.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> part = symrot.mesh("part.stl", density=2700, scale="1/1000")  # doctest: +SKIP
+    >>> body = part.table()  # doctest: +SKIP
+    """
+    return read_mesh(Path(path), str(path), mass=mass, density=density, scale=scale, flip=flip).inertial
+
+
+def read_mesh(path: Path, where: str, *, mass: Any, density: Any, scale: Any, flip: bool) -> MeshBody:
+    """Return the mass properties and the surface of a mesh file; ``where`` is its place in error messages."""
+    if (mass is None) == (density is None):
+        amounts = "both" if mass is not None else "neither"
+        raise InputError(f"{where}: expected exactly one of mass (kg) and density (kg/m^3) of a mesh, got {amounts}")
+    unit = _positive(scale, f"{where}: scale", "a length in m of the unit of the mesh")
+    if not Fraction(1, 10**30) <= unit <= 10**30:
+        raise InputError(f"{where}: scale: expected a length from 1e-30 to 1e30 m, got {show(scale)}")
+    surface = read_surface(path, where)
+    surface = surface.flipped() if flip else surface
+    return MeshBody(polyhedron(surface, path.stem, where, mass, density, unit), surface, unit)
+
+
+def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any, unit: Fraction) -> Inertial:
+    """Return the mass properties of the body that a surface bounds, after all tests of the surface.
+
+    Parameters
+    ----------
+    surface : Surface
+        Triangles; lengths in ``unit`` (m).
+    name, where : str
+        Name of the result; place for error messages.
+    mass, density : number, str or None
+        As in :func:`mesh`; exactly one is not None.
+
+    Raises
+    ------
+    InputError
+        If the surface is not the boundary of a body.
+    """
+    require_closed(surface, where)
+    if mass is not None:
+        amount, polynomial = _positive(mass, f"{where}: mass", "a mass in kg"), parse("1")
+    else:
+        amount, polynomial = None, _density(density, f"{where}: density")
+    degree = _degree(polynomial, density, unit, where)
+    work = len(surface.triangles) * len(exponents(degree))
+    result = None
+    if work > MOST_EXACT:
+        moments = approximate_moments(surface, degree)
+        _require_volume(moments, unit, where)
+        body = _integrated(moments, polynomial, density, unit, where)
+        result = _result(body, amount, exact=False)
+    if result is None:
+        if work > LARGEST_WORK:
+            raise InputError(
+                f"{where}: expected a mesh whose integrals reach an error of {float(LARGEST_ERROR):g}, got one whose "
+                f"terms cancel, with {len(surface.triangles)} triangles; reduce their number"
+            )
+        moments = exact_moments(surface, degree)
+        _require_volume(moments, unit, where)
+        body = _integrated(moments, polynomial, density, unit, where)
+        result = _result(body, amount, exact=True)
+    checks = require_boundary(surface, where)
+    if body.mass[0] <= 0:
+        raise InputError(
+            f"{where}: density: expected a density with a positive mass, got {show(density)} with a mass of "
+            f"{float(body.mass[0]):.6g} kg"
+        )
+    assert result is not None
+    total, center, tensor, error = result
+    require_admissible(principal_axes(tensor, where), where)
+    x, y, z = center
+    return Inertial(name, total, (x, y, z), tensor, body.volume, float(error), checks)
+
+
+def _positive(value: Any, where: str, expectation: str) -> Fraction:
+    number = read(value, where, expectation.replace("a ", "a positive ", 1))
+    if number <= 0:
+        raise InputError(f"{where}: expected {expectation.replace('a ', 'a positive ', 1)}, got {show(value)}")
+    return number
+
+
+def _density(density: Any, where: str) -> Any:
+    """Return a density as a formula tree."""
+    if isinstance(density, str):
+        node = parse(density, where)
+        if node[0] != "number":
+            return node
+    return ("number", _positive(density, where, "a density in kg/m^3"))
+
+
+def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
+    """Return the degree of the integrals that a density needs."""
+    axes = {name: generator(name) * unit for name in "xyz"}
+    powers = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
+    return 2 + max((sum(item) for item in powers), default=0)
+
+
+def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
+    """Return the integrals of a density, kg, kg m, kg m^2, from those of powers of local coordinates."""
+    axes = {
+        name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)
+    }
+    polynomial = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
+    terms: Mapping[Exponents, Fraction] = {
+        (powers[0], powers[1], powers[2]): factor.value({}) for powers, factor in polynomial.items()
+    }
+
+    def integral(*axes: int) -> tuple[Fraction, Fraction]:
+        total = bound = Fraction(0)
+        factor = unit ** (3 + len(axes))
+        for powers, coefficient in terms.items():
+            first, second, third = (power + axes.count(axis) for axis, power in enumerate(powers))
+            total += coefficient * moments.values[first, second, third]
+            bound += abs(coefficient) * moments.errors[first, second, third]
+        return total * factor, bound * factor
+
+    return _Body(
+        integral(),
+        tuple(integral(i) for i in range(3)),
+        tuple(tuple(integral(*sorted((i, j))) for j in range(3)) for i in range(3)),
+        tuple(middle * unit for middle in moments.center),
+        moments.values[0, 0, 0] * unit**3,
+    )
+
+
+def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
+    """Return mass, centre, tensor and relative error; None if the error is too large, or the mass not positive."""
+    (mass, mass_error), first = body.mass, body.first
+    if mass <= mass_error:
+        return None
+    offset = [value / mass for value, _ in first]
+    second = [[body.second[i][j][0] - first[i][0] * offset[j] for j in range(3)] for i in range(3)]
+    factor = Fraction(1) if amount is None else amount / mass
+    tensor = inertia_of_second_moments([[entry * factor for entry in row] for row in second])
+    center = [middle + shift for middle, shift in zip(body.center, offset, strict=True)]
+    error = Fraction(0)
+    if not exact:
+        shift_errors = [(first[i][1] + abs(offset[i]) * mass_error) / (mass - mass_error) for i in range(3)]
+        second_error = max(
+            body.second[i][j][1] + abs(first[i][0]) * shift_errors[j] + (abs(offset[j]) + shift_errors[j]) * first[i][1]
+            for i in range(3)
+            for j in range(3)
+        )
+        trace = second[0][0] + second[1][1] + second[2][2]
+        smallest = Fraction(float(np.linalg.eigvalsh(np.array([[float(x / trace) for x in row] for row in second]))[0]))
+        if trace <= 0 or smallest * LARGEST_SHARE * trace <= second_error:
+            return None
+        radius = Fraction(float(trace / mass) ** 0.5)
+        tensor_error = 3 * second_error / trace + mass_error / mass
+        error = max(tensor_error, *(shift_error / radius for shift_error in shift_errors))
+        if error > LARGEST_ERROR:
+            return None
+    return amount or mass, center, tensor, error
+
+
+def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
+    """Raise InputError if the volume is zero or negative; a volume within the bound of its error passes."""
+    volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
+    if volume == 0 and error == 0:
+        raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")
+    if volume < -error:
+        raise InputError(
+            f"{where}: expected a mesh whose normals point outwards, got one that is turned inside out, with a volume "
+            f"of {float(volume * unit**3):.6g} m^3; write flip = true"
+        )

@@ -1,0 +1,110 @@
+"""Reading of mesh files by trimesh: vertices and triangles as arrays, and one sentence for each file that has none."""
+
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symrot.errors import InputError
+from symrot.exchange.surface import Surface, merge
+from symrot.files.reading import read_input
+from symrot.formula.exact_numbers import show
+
+__all__ = ["SUFFIXES", "read_surface"]
+
+SUFFIXES = (".stl", ".obj", ".ply", ".glb")
+LARGEST_FILE = 500_000_000
+"""Largest size, in bytes, of a mesh file."""
+
+LARGEST_COORDINATE = 1e30
+MOST_TRIANGLES = 20_000_000
+
+
+def read_surface(path: Path, where: str) -> Surface:
+    """Return the triangles of a mesh file, with vertices at equal positions merged.
+
+    Parameters
+    ----------
+    path : Path
+        A file with a suffix in SUFFIXES. Files that it refers to, such as textures, are not opened.
+    where : str
+        Place for error messages.
+
+    Raises
+    ------
+    InputError
+        If trimesh is not installed, or if the file cannot be read, has no triangles, or has coordinates that are not
+        finite or beyond 1e30.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(f"{where}: expected a mesh file ({', '.join(SUFFIXES)}), got {show(path.name)}")
+    try:
+        import trimesh
+    except ImportError:
+        raise InputError(
+            f"{where}: expected trimesh, which reads meshes, but it is not installed; install it with "
+            "pip install 'symrot[mesh]'"
+        ) from None
+    try:
+        content = read_input(path, LARGEST_FILE)
+    except OSError as reason:
+        limit = f"{LARGEST_FILE // 1_000_000} MB"
+        raise InputError(
+            f"{where}: expected a readable mesh file of at most {limit}, got {reason.strerror or reason}"
+        ) from None
+    try:
+        mesh = _load(trimesh, content, suffix[1:])
+    except MemoryError:
+        raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
+    except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
+        fault = " ".join(str(reason).split())[:80] or type(reason).__name__
+        raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None
+    return _checked(mesh, where)
+
+
+def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
+    """Return vertices and triangles; all bodies of a file, at their places, form one mesh."""
+    options: dict[str, Any] = {"process": False, "maintain_order": True}
+    if kind in ("obj", "glb"):
+        options["skip_materials"] = True
+    scene = trimesh.load_scene(BytesIO(content), file_type=kind, **options)
+    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        if not hasattr(geometry, "faces"):
+            continue
+        points = np.asarray(geometry.vertices, dtype=np.float64).reshape(-1, 3)
+        if not np.array_equal(transform, np.eye(4)):
+            points = points @ transform[:3, :3].T + transform[:3, 3]
+        corners = np.asarray(geometry.faces, dtype=np.int64).reshape(-1, 3)
+        if np.linalg.det(transform[:3, :3]) < 0:  # a reflection reverses the orientation
+            corners = corners[:, ::-1]
+        vertices.append(points)
+        faces.append(corners + count)
+        count += len(points)
+    if len(vertices) == 2:
+        return vertices[1], faces[1]
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
+    vertices, triangles = mesh
+    if not len(triangles):
+        raise InputError(f"{where}: expected a mesh with triangles, got {len(vertices)} points and no triangle")
+    if len(triangles) > MOST_TRIANGLES:
+        raise InputError(f"{where}: expected at most {MOST_TRIANGLES} triangles, got {len(triangles)}")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise InputError(
+            f"{where}: expected corners from 0 to {len(vertices) - 1}, got a triangle with corner "
+            f"{triangles.min() if triangles.min() < 0 else triangles.max()}"
+        )
+    if not np.isfinite(vertices).all():
+        wrong = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+        raise InputError(f"{where}: expected finite coordinates, got {vertices[wrong[0]].tolist()}")
+    largest = float(max(vertices.max(), -vertices.min()))
+    if largest > LARGEST_COORDINATE:
+        raise InputError(f"{where}: expected coordinates up to {LARGEST_COORDINATE:g}, got {largest:.6g}")
+    return merge(vertices, triangles)

@@ -1,0 +1,127 @@
+"""Rotations as robot files write them, as exact matrices that map components in the inner frame to the outer frame."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import atan2, hypot
+from typing import NamedTuple
+
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import Angle, rounded, show, unit
+from symrot.inertia.tensor import IDENTITY, Tensor, cross, dot, matrix, multiply, transpose
+
+__all__ = ["ORIENTATIONS", "Angles", "of_quaternion", "of_roll_pitch_yaw", "quaternion_of", "roll_pitch_yaw_of"]
+
+Numbers = Sequence[Fraction]
+
+
+class Angles(NamedTuple):
+    """How a file writes angles: in degrees or rad, and the sequence of axes, in lower case about moving axes."""
+
+    degrees: bool = False
+    sequence: str = "xyz"
+
+    def angle(self, value: Fraction) -> Angle:
+        """Return the angle that a number of the file means."""
+        return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
+
+
+def _elementary(axis: int, angle: Angle) -> Tensor:
+    rows = [[Fraction(int(i == j)) for j in range(3)] for i in range(3)]
+    after, last = (axis + 1) % 3, (axis + 2) % 3
+    rows[after][after] = rows[last][last] = angle.cos
+    rows[last][after] = angle.sin
+    rows[after][last] = -rows[last][after]
+    return matrix(rows)
+
+
+def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
+    """Return the rotation by roll, pitch and yaw: about the fixed axes x, y, z, in this order."""
+    roll, pitch, yaw = map(angles.angle, values)
+    return multiply(_elementary(2, yaw), multiply(_elementary(1, pitch), _elementary(0, roll)))
+
+
+def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
+    """Return the rotation of a quaternion, scalar first, after division by its norm."""
+    w, x, y, z = _direction(values, "a quaternion that is not zero")
+    return matrix([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+
+
+def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
+    half = angles.angle(values[3]).scaled(Fraction(1, 2))
+    axis = _direction(values[:3], "an axis that is not zero")
+    return of_quaternion([half.cos, *(rounded(half.sin * x) if half.sin * x else Fraction(0) for x in axis)], angles)
+
+
+def _of_euler(values: Numbers, angles: Angles) -> Tensor:
+    """Return the rotation by Euler angles; an axis in lower case is a moving axis, in upper case a fixed axis."""
+    total = matrix(IDENTITY)
+    for letter, value in zip(angles.sequence, values, strict=True):
+        step = _elementary("xyz".index(letter.lower()), angles.angle(value))
+        total = multiply(total, step) if letter.islower() else multiply(step, total)
+    return total
+
+
+def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
+    """Return the rotation whose x axis is given, and whose y axis is the second vector made orthogonal to it."""
+    x = _direction(values[:3], "an x axis that is not zero")
+    slope = dot(values[3:], x)
+    y = _direction(
+        [b - slope * a for a, b in zip(x, values[3:], strict=True)], "a y axis that is not parallel to the x axis"
+    )
+    return transpose([x, y, cross(x, y)])
+
+
+def _of_z_axis(values: Numbers, angles: Angles) -> Tensor:
+    """Return the smallest rotation that carries the z axis into a vector."""
+    x, y, z = _direction(values, "a z axis that is not zero")
+    if x == y == 0:
+        return of_quaternion(
+            [Fraction(1), *[Fraction(0)] * 3] if z > 0 else [Fraction(n) for n in (0, 1, 0, 0)], angles
+        )
+    return of_quaternion([1 + z, -y, x, Fraction(0)], angles)
+
+
+def _direction(values: Numbers, what: str) -> tuple[Fraction, ...]:
+    if not any(values):
+        raise InputError(f"expected {what}, got {show(list(values))}")
+    return unit(values)
+
+
+ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
+    "quat": (4, of_quaternion),
+    "axisangle": (4, _of_axis_angle),
+    "euler": (3, _of_euler),
+    "xyaxes": (6, _of_two_axes),
+    "zaxis": (3, _of_z_axis),
+}
+"""Attribute of MJCF -> how many numbers it has, and the rotation that they mean."""
+
+
+def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
+    """Return roll, pitch and yaw, rad, of a rotation."""
+    m = [[float(entry) for entry in row] for row in rotation]
+    across = hypot(m[0][0], m[1][0])
+    if across < 1e-12:  # gimbal lock: only the sum or difference of roll and yaw matters
+        return 0.0, atan2(-m[2][0], across), atan2(-m[0][1], m[1][1])
+    return atan2(m[2][1], m[2][2]), atan2(-m[2][0], across), atan2(m[1][0], m[0][0])
+
+
+def quaternion_of(rotation: Tensor) -> tuple[float, float, float, float]:
+    """Return the unit quaternion of a rotation, scalar first, with a scalar that is not negative."""
+    m = [[float(entry) for entry in row] for row in rotation]
+    trace = m[0][0] + m[1][1] + m[2][2]
+    squares = [1 + trace, *(1 + 2 * m[k][k] - trace for k in range(3))]  # 4 q_k^2
+    differences = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]]  # 4 q_0 q_k
+    largest = max(range(4), key=squares.__getitem__)
+    products = [squares[0], *differences]
+    if largest:
+        i = largest - 1
+        products = [differences[i], *(m[i][k] + m[k][i] for k in range(3))]
+        products[largest] = squares[largest]
+    norm = hypot(*products) * (1 if products[0] >= 0 else -1)
+    w, x, y, z = (value / norm for value in products)
+    return w, x, y, z

@@ -1,0 +1,329 @@
+"""The inertials of robot files in the formats URDF, MJCF and SDF: read, and checked that a body can have them."""
+
+import re
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree.ElementTree import Element
+
+from symrot.errors import InputError, with_hint
+from symrot.exchange.inertial import Inertial
+from symrot.exchange.orientation import ORIENTATIONS, Angles, of_quaternion, of_roll_pitch_yaw
+from symrot.exchange.xml_file import read_xml
+from symrot.formula.exact_numbers import show
+from symrot.inertia.principal import principal_axes, require_admissible
+from symrot.inertia.tensor import IDENTITY, Tensor, matrix, rotate
+
+__all__ = ["FORMATS", "Format", "Link", "link", "links", "read_robot"]
+
+LARGEST = Fraction(10) ** 100
+_NUMBER = re.compile(r"[+-]?(\d{1,400}\.?\d{0,400}|\.\d{1,400})([eE][+-]?\d{1,3})?", re.ASCII)
+_ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+class Link(NamedTuple):
+    """A link of a robot file: its inertial, or the reason why it has none that a body can have.
+
+    Attributes
+    ----------
+    name : str
+        Name of the link.
+    inertial : Inertial or None
+        Mass, centre and tensor, in the axes of the link; None if there is a problem.
+    problem : str
+        A clause such as ``"expected a positive mass, got 0"``; empty if there is none.
+    empty : bool
+        Whether the link has no element ``<inertial>``, as links for frames and sensors.
+
+    Examples
+    --------
+    >>> Link("tool", None, "expected an element <inertial>, got none", empty=True).name
+    'tool'
+    """
+
+    name: str
+    inertial: Inertial | None
+    problem: str = ""
+    empty: bool = False
+
+
+class Format(NamedTuple):
+    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial."""
+
+    name: str
+    tag: str
+    paths: tuple[str, ...]
+    read: Callable[[Element, Element], Inertial]
+
+    def elements(self, root: Element) -> list[Element]:
+        """Return the elements of all links; elements of the same tag elsewhere, as in plugins, are no links."""
+        return [element for path in self.paths for element in root.findall(path)]
+
+
+def links(path: str | Path) -> tuple[Link, ...]:
+    """Return all links of a robot file with their inertials, or with their problems.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file in the format URDF, MJCF or SDF.
+
+    Returns
+    -------
+    tuple of Link
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        If the file is not such a file or has no links.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> for each in symrot.links("robot.urdf"):  # doctest: +SKIP
+    ...     print(each.name, each.problem or each.inertial)
+    """
+    form, root = read_robot(path)[:2]
+    return tuple(_link(form, root, element) for element in _links(form, root, str(path)))
+
+
+def link(path: str | Path, name: str = "") -> Inertial:
+    """Return mass, centre of mass and inertia of a link of a robot file, in the axes of the link.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file in the format URDF, MJCF or SDF.
+    name : str
+        Name of the link (in MJCF: of the body); it may be omitted if the file has only one.
+
+    Returns
+    -------
+    Inertial
+        Exact for the numbers of the file; rotations are right to 2^-300. ``table()`` is the body of a scene.
+
+    Raises
+    ------
+    InputError
+        If there is no such link, if it has no inertial, or if no body can have its mass and tensor; the message names
+        the link and the numbers.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> arm = symrot.link("robot.urdf", "upper_arm")  # doctest: +SKIP
+    >>> body = arm.table()  # doctest: +SKIP
+    """
+    form, root = read_robot(path)[:2]
+    elements = _links(form, root, str(path))
+    names = [element.get("name", "") for element in elements]
+    if not name and len(elements) > 1:
+        raise InputError(f"{path}: expected the name of one of its links, {_listed(names)}, got none")
+    same = [element for element in elements if not name or element.get("name") == name]
+    if not same:
+        message = f"{path}: expected one of its links, {_listed(names)}, got {show(name)}"
+        raise InputError(with_hint(message, name, names))
+    if len(same) > 1:
+        raise InputError(f"{path}: expected one link of the name {show(name)}, got {len(same)}")
+    result = _link(form, root, same[0])
+    if result.inertial is None:
+        raise InputError(f"{path}: link {show(result.name)}: {result.problem}")
+    return result.inertial
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:20]) + (", .." if len(names) > 20 else "")
+
+
+def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
+    """Return the format of a robot file, its root element and its bytes."""
+    content, root = read_xml(Path(path), str(path))
+    if root.tag not in FORMATS:
+        tags = ", ".join(f"<{tag}> ({form.name})" for tag, form in FORMATS.items())
+        raise InputError(f"{path}: expected a robot file, {tags}, got an XML file with the root <{root.tag[:60]}>")
+    return FORMATS[root.tag], root, content
+
+
+def _links(form: Format, root: Element, where: str) -> list[Element]:
+    elements = form.elements(root)
+    if not elements:
+        reason = "; files that it includes are not read" if root.find(".//include") is not None else ""
+        raise InputError(f"{where}: expected a robot with links (<{form.tag}>), got none{reason}")
+    return elements
+
+
+def _link(form: Format, root: Element, element: Element) -> Link:
+    name = element.get("name", "")
+    try:
+        inertial = form.read(element, root)
+        _require_body(inertial)
+    except InputError as problem:
+        return Link(name, None, str(problem), element.find("inertial") is None)
+    return Link(name, inertial)
+
+
+def _require_body(inertial: Inertial) -> None:
+    if inertial.mass <= 0:
+        raise InputError(f"expected a positive mass in kg, got {float(inertial.mass):.6g}")
+    principal = principal_axes(inertial.inertia)
+    require_admissible(principal)
+    if min(principal.moments) <= 0:
+        moments = ", ".join(f"{float(moment):.15g}" for moment in principal.moments)
+        raise InputError(f"expected three positive principal moments of inertia, got {moments} kg m^2")
+
+
+# --- numbers ----------------------------------------------------------------------------------------------------------
+
+
+def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
+    """Return the numbers in the text of an attribute or element."""
+    words = (text or "").split()
+    if "$" in (text or ""):
+        raise InputError(f"{place}: expected numbers, got {show(text)}; expand the file with xacro first")
+    if len(words) != count:
+        raise InputError(f"{place}: expected {count} {'number' if count == 1 else 'numbers'}, got {show(text or '')}")
+    for word in words:
+        if not _NUMBER.fullmatch(word):
+            raise InputError(f"{place}: expected a number, got {show(word)}")
+    values = tuple(map(Fraction, words))
+    for value, word in zip(values, words, strict=True):
+        if value and not 1 / LARGEST <= abs(value) <= LARGEST:
+            raise InputError(f"{place}: expected a number of a magnitude between 1e-100 and 1e100, got {show(word)}")
+    return values
+
+
+def _one(element: Element, tag: str, place: str) -> Element:
+    """Return the only child with a tag."""
+    children = element.findall(tag)
+    if len(children) != 1:
+        raise InputError(f"{place}: expected one element <{tag}>, got {len(children) or 'none'}")
+    return children[0]
+
+
+def _inertial(element: Element, reason: str) -> Element:
+    if element.find("inertial") is None:
+        raise InputError(f"expected an element <inertial>, got none{reason}")
+    return _one(element, "inertial", "link")
+
+
+def _body(
+    element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
+) -> Inertial:
+    """Return an inertial in the axes of the link, from a tensor in the axes of the inertial."""
+    x, y, z = center
+    turned = tensor if rotation is None else _symmetric(rotate(tensor, rotation))
+    return Inertial(element.get("name", ""), mass, (x, y, z), turned)
+
+
+def _symmetric(tensor: Tensor) -> Tensor:
+    return matrix([[(tensor[i][j] + tensor[j][i]) / 2 for j in range(3)] for i in range(3)])
+
+
+def _tensor(entries: Mapping[str, Fraction]) -> Tensor:
+    return matrix([[entries["i" + "".join(sorted(row + column))] for column in "xyz"] for row in "xyz"])
+
+
+# --- formats ----------------------------------------------------------------------------------------------------------
+
+
+def _read_urdf(element: Element, root: Element) -> Inertial:
+    inertial = _inertial(element, "; the link has no mass")
+    origin = inertial.find("origin")
+    center = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"), 3, "origin.xyz")
+    angles = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"), 3, "origin.rpy")
+    mass = _numbers(_one(inertial, "mass", "inertial").get("value"), 1, "mass.value")[0]
+    inertia = _one(inertial, "inertia", "inertial")
+    tensor = _tensor({key: _numbers(inertia.get(key), 1, f"inertia.{key}")[0] for key in _ENTRIES})
+    return _body(element, mass, center, tensor, of_roll_pitch_yaw(angles, Angles()) if any(angles) else None)
+
+
+def _read_sdf(element: Element, root: Element) -> Inertial:
+    inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
+    if inertial.get("auto", "false") not in ("false", "0"):
+        raise InputError("inertial: expected a mass and a tensor, got auto, by which the simulator computes them")
+    if inertial.find("fluid_added_mass") is not None:
+        raise InputError("inertial: expected a rigid body alone, got fluid_added_mass")
+    mass = _numbers(inertial.findtext("mass", "1"), 1, "mass")[0]
+    inertia = inertial.find("inertia")
+    defaults = {key: "1" if key in ("ixx", "iyy", "izz") else "0" for key in _ENTRIES}
+    entries = {
+        key: _numbers(value if inertia is None else inertia.findtext(key, value), 1, f"inertia.{key}")[0]
+        for key, value in defaults.items()
+    }
+    center, rotation = _pose(inertial.find("pose"))
+    return _body(element, mass, center, _tensor(entries), rotation)
+
+
+def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
+    """Return the position and rotation of an element <pose> of SDF."""
+    if pose is None:
+        return (Fraction(0),) * 3, None
+    if pose.get("relative_to") or pose.get("frame"):
+        raise InputError("pose: expected a pose in the frame of the link, got one relative to another frame")
+    form = pose.get("rotation_format", "euler_rpy")
+    if form == "quat_xyzw":
+        *position, x, y, z, w = _numbers(pose.text, 7, "pose")
+        return tuple(position), of_quaternion([w, x, y, z], Angles())
+    if form != "euler_rpy":
+        raise InputError(f"pose: expected the rotation_format euler_rpy or quat_xyzw, got {show(form)}")
+    values = _numbers(pose.text or "0 0 0 0 0 0", 6, "pose")
+    rotation = of_roll_pitch_yaw(values[3:], Angles(degrees=pose.get("degrees", "false") in ("true", "1")))
+    return values[:3], rotation if any(values[3:]) else None
+
+
+_CHANGING = {
+    "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "boundmass": ("0",), "boundinertia": ("0",),
+    "settotalmass": ("-1",), "coordinate": ("local",),
+}  # fmt: skip
+"""Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not."""
+
+
+def _read_mjcf(element: Element, root: Element) -> Inertial:
+    inertial = _inertial(element, "; MuJoCo then computes the inertia from geoms, which is not read")
+    if root.find(".//include") is not None:
+        raise InputError(
+            "expected a model in one file, got <include>, whose settings may change inertials; save it as one"
+        )
+    settings: dict[str, str] = {}
+    for compiler in root.iter("compiler"):
+        settings |= compiler.attrib
+    for key, values in _CHANGING.items():
+        if settings.get(key, values[0]) not in values:
+            raise InputError(
+                f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, which changes inertials"
+            )
+    sequence = settings.get("eulerseq", "xyz")
+    if not re.fullmatch("[xyzXYZ]{3}", sequence):
+        raise InputError(f"compiler.eulerseq: expected three axes such as 'xyz', got {show(sequence)}")
+    angles = Angles(settings.get("angle", "degree") == "degree", sequence)
+    mass = _numbers(inertial.get("mass"), 1, "inertial.mass")[0]
+    center = _numbers(inertial.get("pos"), 3, "inertial.pos")
+    ways = [key for key in ("diaginertia", "fullinertia") if inertial.get(key)]
+    if len(ways) != 1:
+        raise InputError(
+            f"inertial: expected one of diaginertia and fullinertia, got {' and '.join(ways) or 'neither'}"
+        )
+    turns = [key for key in ORIENTATIONS if inertial.get(key)]
+    if len(turns) > 1 or (turns and ways == ["fullinertia"]):
+        raise InputError(f"inertial: expected one orientation, and none with fullinertia, got {' and '.join(turns)}")
+    rotation = None
+    for key in turns:
+        count, rotation_of = ORIENTATIONS[key]
+        rotation = rotation_of(_numbers(inertial.get(key), count, f"inertial.{key}"), angles)
+    if ways == ["fullinertia"]:
+        order = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+        entries = _numbers(inertial.get("fullinertia"), 6, "inertial.fullinertia")
+        return _body(element, mass, center, _tensor(dict(zip(order, entries, strict=True))), None)
+    moments = _numbers(inertial.get("diaginertia"), 3, "inertial.diaginertia")
+    diagonal = matrix([[m * entry for entry in row] for m, row in zip(moments, IDENTITY, strict=True)])
+    return _body(element, mass, center, diagonal, rotation)
+
+
+FORMATS = {
+    "robot": Format("URDF", "link", ("link",), _read_urdf),
+    "sdf": Format("SDF", "link", (".//model/link",), _read_sdf),
+    "mujoco": Format("MJCF", "body", ("worldbody//body",), _read_mjcf),
+}
+"""Tag of the root element -> format."""

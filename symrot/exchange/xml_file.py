@@ -1,0 +1,103 @@
+"""Reading of XML files of unknown origin: no document types, so no entities, and limits of size and depth."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+from symrot.errors import InputError
+from symrot.files.reading import read_input
+
+__all__ = ["Span", "read_xml", "span_of"]
+
+LARGEST_FILE = 20_000_000
+DEEPEST = 200
+
+
+class Span(NamedTuple):
+    """The place of an element in the bytes of a file: ``content[start:stop]``; equal if the element is missing."""
+
+    start: int
+    stop: int
+
+
+class _Refusal(Exception):
+    """A reason not to read a file, raised from the handlers of the parser."""
+
+
+def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
+    """Return the bytes and the root element of an XML file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is larger than 20 MB, is not XML, has a document type, or is nested too deeply.
+    """
+    try:
+        content = read_input(path, LARGEST_FILE)
+    except OSError as reason:
+        limit = f"{LARGEST_FILE // 1_000_000} MB"
+        raise InputError(
+            f"{where}: expected a readable robot file of at most {limit}, got {reason.strerror or reason}"
+        ) from None
+    parser = expat.ParserCreate()
+    depth = 0
+
+    def doctype(*_: Any) -> None:
+        raise _Refusal("a file without a document type, got <!DOCTYPE ..>; remove it")
+
+    def start(*_: Any) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > DEEPEST:
+            raise _Refusal(f"elements nested at most {DEEPEST} deep, got more")
+
+    def end(*_: Any) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser.StartDoctypeDeclHandler, parser.StartElementHandler, parser.EndElementHandler = doctype, start, end
+    try:
+        parser.Parse(content, True)
+        return content, ElementTree.fromstring(content)
+    except _Refusal as reason:
+        raise InputError(f"{where}: expected {reason}") from None
+    except (expat.ExpatError, ElementTree.ParseError, ValueError, LookupError) as reason:
+        raise InputError(f"{where}: expected an XML file, got a fault: {' '.join(str(reason).split())[:80]}") from None
+
+
+def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
+    """Return the place of an element inside ``<owner name="name">``, and whether the element is present.
+
+    If it is absent, the span is empty and lies directly behind the start tag of the owner.
+    """
+    parser = expat.ParserCreate()
+    stack: list[tuple[str, str]] = []
+    places: dict[str, int] = {}
+    waits: list[str] = []  # names of places that are where the next event is
+
+    def mark(*_: Any) -> None:
+        while waits:
+            places.setdefault(waits.pop(), parser.CurrentByteIndex)
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        mark()
+        if tag == element and stack and stack[-1] == (owner, name) and "start" not in places:
+            places["start"] = parser.CurrentByteIndex
+        stack.append((tag, attributes.get("name", "")))
+        if stack[-1] == (owner, name):
+            waits.append("inside")
+
+    def end(tag: str) -> None:
+        mark()
+        stack.pop()
+        if tag == element and stack and stack[-1] == (owner, name) and "stop" not in places:
+            waits.append("stop")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.CharacterDataHandler = parser.CommentHandler = parser.ProcessingInstructionHandler = mark
+    parser.StartCdataSectionHandler = mark
+    parser.Parse(content, True)
+    if "stop" in places:
+        return Span(places["start"], places["stop"]), True
+    return Span(places["inside"], places["inside"]), False

@@ -1,0 +1,44 @@
+"""The folders from which a scene may read files: its own and those that the user allows. Standard library only."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from symrot.scene.reader import fail
+
+__all__ = ["Folders"]
+
+
+class Folders(NamedTuple):
+    """The folder of a scene, and further folders whose files the scene may name."""
+
+    folder: Path = Path()
+    others: str | Path | Sequence[str | Path] = ()
+
+    def file(self, name: str, where: str, what: str) -> Path:
+        """Return the path of a file that a scene names; raise InputError if it is outside the allowed folders.
+
+        Links are followed before the check. A scene may come from an untrusted source, and must not make symrot open
+        any other file of the user and quote it in a message.
+
+        Parameters
+        ----------
+        name : str
+            The name in the scene, relative to the scene's folder.
+        where : str
+            Place of the name, for error messages.
+        what : str
+            The kind of file, such as ``"a CSV file"``.
+        """
+        others = (self.others,) if isinstance(self.others, str | Path) else self.others
+        if not name.strip() or "\\" in name:
+            fail(where, f"the name of {what}, with / between folders", name)
+        try:
+            path = (self.folder / name).resolve()
+            inside = any(path.is_relative_to(Path(each).resolve()) for each in (self.folder, *others))
+        except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle
+            fail(where, f"the name of {what}, got {getattr(reason, 'strerror', None) or reason}")
+        if not inside:
+            fail(where, "a file in the folder of the scene or below it", name, "`--table-folder DIR`, in Python "
+                     "load_scene(.., table_folders=[DIR]), allows files in another folder")  # fmt: skip
+        return path

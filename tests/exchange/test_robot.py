@@ -1,0 +1,274 @@
+"""Links of robot files: the same body in three formats, there and back, and a sentence for each fault."""
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import symrot
+from symrot.cli.main import main
+from symrot.errors import InputError
+from symrot.exchange.inertial import Inertial
+from symrot.exchange.robot_text import inertial_text
+
+URDF = """<?xml version="1.0"?>
+<!-- a robot -->
+<robot name="r">
+  <link name="base"/>
+  <link name="arm">
+    <inertial>
+      <origin xyz="0.1 0 0.2" rpy="{rpy}"/>
+      <mass value="2.5"/>
+      <inertia ixx="0.02" ixy="0.001" ixz="0" iyy="0.03" iyz="-0.002" izz="0.04"/>
+    </inertial>
+  </link>
+</robot>
+"""
+SDF = """<sdf version="1.9"><model name="m"><link name="arm"><inertial>
+<pose {attributes}>0.1 0 0.2 {rotation}</pose><mass>2.5</mass>
+<inertia><ixx>0.02</ixx><ixy>0.001</ixy><ixz>0</ixz><iyy>0.03</iyy><iyz>-0.002</iyz><izz>0.04</izz></inertia>
+</inertial></link></model></sdf>"""
+MJCF = """<mujoco><compiler {compiler}/><worldbody><body name="trunk"><body name="arm">
+<inertial pos="0.1 0 0.2" mass="2.5" {inertia}/></body></body></worldbody></mujoco>"""
+TENSOR = np.array([[0.02, 0.001, 0], [0.001, 0.03, -0.002], [0, -0.002, 0.04]])
+
+
+def robot(tmp_path, text, suffix="xml"):
+    path = tmp_path / f"robot.{suffix}"
+    path.write_text(text)
+    return path
+
+
+def tensor(inertial):
+    return np.array(inertial.inertia, dtype=float)
+
+
+def expected(rotation):
+    matrix = rotation.as_matrix()
+    return matrix @ TENSOR @ matrix.T
+
+
+@pytest.mark.parametrize("rpy", ["0 0 0", "0.3 -0.2 1.1", "0 1.5707963267948966 0.4", "3.0 -1.2 -2.9"])
+def test_roll_pitch_yaw_are_rotations_about_fixed_axes(tmp_path, rpy):
+    angles = [float(x) for x in rpy.split()]
+    arm = symrot.link(robot(tmp_path, URDF.format(rpy=rpy)), "arm")
+    assert tensor(arm) == pytest.approx(expected(Rotation.from_euler("xyz", angles)), abs=1e-16)
+    assert arm.mass == Fraction(5, 2) and arm.center_of_mass == (Fraction(1, 10), 0, Fraction(1, 5))
+    degrees = " ".join(repr(float(np.degrees(x))) for x in angles)
+    for attributes, rotation in (("", rpy), ('degrees="true"', degrees)):
+        same = symrot.link(robot(tmp_path, SDF.format(attributes=attributes, rotation=rotation)))
+        assert tensor(same) == pytest.approx(tensor(arm), abs=1e-16)
+
+
+def test_a_quaternion_of_sdf_has_its_scalar_last(tmp_path):
+    rotation = Rotation.from_rotvec([0.3, 1.1, -0.7])
+    text = SDF.format(
+        attributes='rotation_format="quat_xyzw"', rotation=" ".join(map(repr, rotation.as_quat().tolist()))
+    )
+    assert tensor(symrot.link(robot(tmp_path, text))) == pytest.approx(expected(rotation), abs=1e-16)
+
+
+ROTATION = Rotation.from_rotvec([0.3, 1.1, -0.7])
+
+
+def words(values):
+    return " ".join(repr(float(value)) for value in values)
+
+
+@pytest.mark.parametrize("compiler,attribute,rotation", [
+    ("", f'quat="{words(3 * ROTATION.as_quat()[[3, 0, 1, 2]])}"', ROTATION),
+    ('angle="radian"', f'axisangle="0.6 2.2 -1.4 {float(ROTATION.magnitude())!r}"', ROTATION),
+    ("", f'axisangle="0.6 2.2 -1.4 {float(np.degrees(ROTATION.magnitude()))!r}"', ROTATION),
+    ("", 'euler="30 40 50"', Rotation.from_euler("XYZ", [30, 40, 50], degrees=True)),
+    ('eulerseq="XYZ"', 'euler="30 40 50"', Rotation.from_euler("xyz", [30, 40, 50], degrees=True)),
+    ('eulerseq="zyx" angle="radian"', 'euler="0.3 0.4 0.5"', Rotation.from_euler("ZYX", [0.3, 0.4, 0.5])),
+    ("", f'xyaxes="{words(2 * ROTATION.as_matrix()[:, 0])} {words(ROTATION.as_matrix() @ [0.4, 3, 0])}"', ROTATION),
+    ("", 'zaxis="0 3 0"', Rotation.from_rotvec([-np.pi / 2, 0, 0])),
+    ("", 'zaxis="0 0 -2"', Rotation.from_rotvec([np.pi, 0, 0])),
+])  # fmt: skip
+def test_orientations_of_mjcf(tmp_path, compiler, attribute, rotation):
+    text = MJCF.format(compiler=compiler, inertia=f'{attribute} diaginertia="0.02 0.03 0.04"')
+    matrix = rotation.as_matrix()
+    arm = symrot.link(robot(tmp_path, text), "arm")
+    assert tensor(arm) == pytest.approx(matrix @ np.diag([0.02, 0.03, 0.04]) @ matrix.T, abs=1e-16)
+
+
+def test_fullinertia_lists_the_diagonal_first(tmp_path):
+    text = MJCF.format(compiler="", inertia='fullinertia="0.02 0.03 0.04 0.001 0 -0.002"')
+    assert symrot.link(robot(tmp_path, text), "arm").inertia == tuple(
+        tuple(Fraction(repr(x)) for x in row) for row in TENSOR.tolist()
+    )
+
+
+TEXTS = {
+    "URDF": URDF.format(rpy="0 0 0"),
+    "SDF": SDF.format(attributes="", rotation="0 0 0"),
+    "MJCF": MJCF.format(compiler="", inertia='diaginertia="1 1 1"'),
+}
+
+
+@pytest.mark.parametrize("form", TEXTS)
+@pytest.mark.parametrize("vector", [(0, 0, 0), (0.3, 1.1, -0.7), (0, np.pi / 2, 0), (2, -2, 1)])
+def test_a_link_that_is_written_reads_back(tmp_path, form, vector):
+    path = robot(tmp_path, TEXTS[form])
+    matrix = Rotation.from_rotvec(vector).as_matrix()
+    rows = matrix @ np.diag([3, 4, 5]) @ matrix.T
+    rows = (rows + rows.T) / 2
+    body = Inertial(
+        "x",
+        Fraction(1, 3),
+        (Fraction(1), Fraction(-2), Fraction(0)),
+        tuple(tuple(map(Fraction, row)) for row in rows.tolist()),
+    )
+    new = symrot.write_link(path, "arm", body, tmp_path / "new.xml")
+    again = symrot.link(new, "arm")
+    assert tensor(again) == pytest.approx(rows, abs=1e-14)
+    assert float(again.mass) == 1 / 3 and again.center_of_mass == (1, -2, 0)
+    assert path.read_text() == TEXTS[form]
+    start = path.read_text().index("<inertial")
+    assert new.read_text()[:start] == path.read_text()[:start]
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        '<link name="base"/>',
+        '<link name="base"  />',
+        '<link name="base"></link>',
+        '<link name="base">\n  <visual/></link>',
+    ],
+)
+def test_a_link_without_an_inertial_gets_one(tmp_path, start):
+    path = robot(tmp_path, URDF.format(rpy="0 0 0").replace('<link name="base"/>', start))
+    arm = symrot.link(path, "arm")
+    symrot.write_link(path, "base", arm)
+    assert tensor(symrot.link(path, "base")) == pytest.approx(tensor(arm), abs=1e-17)
+    assert symrot.link(path, "arm") == arm
+
+
+def test_a_flat_body_stays_a_body_when_its_moments_are_rounded(tmp_path):
+    third = Fraction(1, 3)
+    for a, b in ((third, third), (Fraction(1, 7), Fraction(2, 7)), (Fraction(1, 10), Fraction(1, 5))):
+        disk = Inertial("disk", Fraction(1), (0, 0, 0), ((a, 0, 0), (0, b, 0), (0, 0, a + b)))
+        path = robot(tmp_path, TEXTS["URDF"])
+        symrot.write_link(path, "arm", disk)
+        assert float(symrot.link(path, "arm").inertia[2][2]) == pytest.approx(float(a + b), rel=1e-15)
+
+
+def test_an_unknown_format_is_refused():
+    with pytest.raises(InputError, match="expected a format, one of URDF, MJCF, SDF, got 'FBX'"):
+        inertial_text(Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1))), "FBX")
+
+
+# --- refusals ---------------------------------------------------------------------------------------------------------
+
+
+def changed(*pairs):
+    text = URDF.format(rpy="0 0 0")
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><robot name="&b;"/>'
+
+
+@pytest.mark.parametrize("text,sentence", [
+    ("", "expected an XML file"),
+    ("\0\1\2", "expected an XML file"),
+    (URDF.format(rpy="0 0 0")[:150], "expected an XML file"),
+    (BOMB, "expected a file without a document type"),
+    ('<!DOCTYPE r SYSTEM "file:///etc/passwd"><robot/>', "expected a file without a document type"),
+    ("<a>" * 300, "expected elements nested at most 200 deep"),
+    ("<html/>", "expected a robot file, <robot> (URDF), <sdf> (SDF), <mujoco> (MJCF), got an XML file with the root <html>"),
+    ("<robot/>", "expected a robot with links (<link>), got none"),
+    ('<mujoco><include file="x.xml"/></mujoco>', "files that it includes are not read"),
+    (changed(('name="arm"', 'name="arms"')), "expected one of its links, base, arms, got 'arm' (did you mean 'arms'?)"),
+    (changed(('name="base"', 'name="arm"')), "expected one link of the name 'arm', got 2"),
+    (changed(('mass value="2.5"', 'mass value="0"')), "link 'arm': expected a positive mass in kg, got 0"),
+    (changed(('mass value="2.5"', 'mass value="-1"')), "link 'arm': expected a positive mass in kg, got -1"),
+    (changed(('mass value="2.5"', 'mass value="${m}"')), "mass.value: expected numbers, got '${m}'; expand the file with xacro first"),
+    (changed(('mass value="2.5"', 'mass value="1_0"')), "mass.value: expected a number, got '1_0'"),
+    (changed(('mass value="2.5"', 'mass value="nan"')), "mass.value: expected a number, got 'nan'"),
+    (changed(('mass value="2.5"', 'mass value="1e999"')), "mass.value: expected a number of a magnitude between"),
+    (changed(('<mass value="2.5"/>', "")), "inertial: expected one element <mass>, got none"),
+    (changed(('ixx="0.02"', "")), "inertia.ixx: expected 1 number, got ''"),
+    (changed(('xyz="0.1 0 0.2"', 'xyz="0.1 0"')), "origin.xyz: expected 3 numbers, got '0.1 0'"),
+    (changed(('izz="0.04"', 'izz="0.06"')), "none of which exceeds the sum of the other two"),
+    (changed(('ixx="0.02"', 'ixx="-0.02"')), "principal moments of inertia that are not negative"),
+    (changed(('iyz="-0.002"', 'iyz="0.05"')), "link 'arm': expected principal moments"),
+    (SDF.format(attributes='relative_to="x"', rotation="0 0 0"), "pose: expected a pose in the frame of the link"),
+    (SDF.format(attributes='rotation_format="euler"', rotation="0 0 0"), "expected the rotation_format euler_rpy or quat_xyzw"),
+    (SDF.format(attributes="", rotation="0 0 0").replace("<inertial>", '<inertial auto="true">'), "got auto"),
+    (MJCF.format(compiler='inertiafromgeom="true"', inertia='diaginertia="1 1 1"'), "compiler: expected inertiafromgeom = 'false', got 'true'"),
+    (MJCF.format(compiler='balanceinertia="true"', inertia='diaginertia="1 1 1"'), "which changes inertials"),
+    (MJCF.format(compiler='eulerseq="xyw"', inertia='diaginertia="1 1 1"'), "compiler.eulerseq: expected three axes"),
+    (MJCF.format(compiler='coordinate="global"', inertia='diaginertia="1 1 1"'), "expected coordinate = 'local', got 'global'"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 1"').replace("<worldbody>", '<include file="x"/><worldbody>'), "whose settings may change inertials"),
+    (MJCF.format(compiler="", inertia=""), "expected one of diaginertia and fullinertia, got neither"),
+    (MJCF.format(compiler="", inertia='fullinertia="1 1 1 0 0 0" quat="1 0 0 0"'), "none with fullinertia, got quat"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 1" quat="0 0 0 0"'), "expected a quaternion that is not zero"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 1" xyaxes="1 0 0 2 0 0"'), "expected a y axis that is not parallel to the x axis"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 0"'), "expected three positive principal moments"),
+])  # fmt: skip
+def test_a_fault_of_a_file_is_one_sentence(tmp_path, text, sentence):
+    path = robot(tmp_path, text)
+    with pytest.raises(InputError) as refusal:
+        symrot.link(path, "arm")
+    assert sentence in str(refusal.value)
+    assert str(refusal.value).startswith(f"{path}: ") and "\n" not in str(refusal.value)
+
+
+def test_without_a_name_a_file_has_one_link(tmp_path):
+    with pytest.raises(InputError, match="expected the name of one of its links, base, arm, got none"):
+        symrot.link(robot(tmp_path, URDF.format(rpy="0 0 0")))
+    with pytest.raises(InputError, match="link 'base': expected an element <inertial>, got none"):
+        symrot.link(robot(tmp_path, URDF.format(rpy="0 0 0")), "base")
+
+
+def test_links_of_plugins_are_no_links(tmp_path):
+    text = URDF.format(rpy="0 0 0").replace(
+        '<link name="base"/>', '<gazebo><plugin><link name="arm"/></plugin></gazebo>'
+    )
+    path = robot(tmp_path, text)
+    assert symrot.link(path).name == "arm"
+    ball = Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    symrot.write_link(path, "arm", ball)
+    assert symrot.link(path, "arm").inertia == ball.inertia
+    empty = robot(tmp_path, '<robot><gazebo><link name="arm"/></gazebo><link name="arm"/></robot>')
+    before = empty.read_text()
+    with pytest.raises(InputError, match="link 'arm': expected an element <inertial>, got none"):
+        symrot.write_link(empty, "arm", ball)
+    assert empty.read_text() == before
+
+
+def test_a_folder_and_a_missing_file_are_refused(tmp_path):
+    for path, reason in ((tmp_path, "a folder"), (tmp_path / "none.urdf", "No such file")):
+        with pytest.raises(InputError, match=reason):
+            symrot.link(path, "arm")
+
+
+def test_a_link_is_the_body_of_a_scene(tmp_path):
+    arm = symrot.link(robot(tmp_path, URDF.format(rpy="0.3 -0.2 1.1")), "arm")
+    scene = symrot.Scene.build(body=arm.table(), initial={"omega": [0, 1, 0]}, span={"t": [0, 1]})
+    assert scene.body.mass == Fraction(5, 2)
+    assert np.array(scene.body.inertia, dtype=float) == pytest.approx(tensor(arm), rel=1e-15)
+    with pytest.raises(InputError, match=r"fixed_point: expected three numbers \[x, y, z\] in m, got 3"):
+        arm.table(fixed_point=3)
+
+
+def test_the_command_lists_links_and_their_problems(tmp_path, capsys):
+    path = robot(tmp_path, URDF.format(rpy="0 0 0"))
+    assert main(["inertia", str(path)]) == 0
+    assert "base  no inertial\narm   2.5 kg, principal moments" in capsys.readouterr().out
+    assert main(["inertia", f"{path}:arm", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["center_of_mass"] == [0.1, 0, 0.2]
+    path = robot(tmp_path, changed(('izz="0.04"', 'izz="0.06"')))
+    assert main(["inertia", str(path)]) == 1
+    assert "exceeds" in capsys.readouterr().out
+    assert main(["inertia", f"{path}:arm"]) == 2
+    assert "link 'arm'" in capsys.readouterr().err
+    assert main(["inertia", f"{path}:arm", "--mass", "2"]) == 2
