@@ -304,11 +304,15 @@ def _related() -> Iterator[Named]:
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
 
+SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentum")
+"""Formulas of the form a . b, which is a formula of mechanics only if the letters say so."""
+
+
 def _selected(
     formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
 ) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
-    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE}
+    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
