@@ -19,7 +19,8 @@ PERIODS_IN_BIN = 2.0  # a bin that holds whole periods contains their extremes
 WIDTHS = (2.0, 1.6, 1.2, 0.9)  # points: later curves are thinner and drawn on top, so that close curves stay visible
 NEAR = 2.5  # columns: a curve this close to an earlier one hides it
 LONG = 0.04  # fraction of the panel: shorter overlaps are mere crossings
-DASH = 4.0  # points
+DASH = 5.0  # points
+ROUNDING = 1e-9  # smaller changes of a curve, relative to its size, are rounding errors
 HATCHES = ("", "///", "\\\\\\", "...")  # later bands are hatched, so that equal bands all stay visible
 BAND_NOTE = "filled: least to greatest"
 
@@ -37,9 +38,23 @@ def _turns(values: Floats) -> int:
     return int(np.count_nonzero(np.diff(slopes)))
 
 
-def is_too_fast(values: Floats, columns: float) -> bool:
-    """Return whether a curve, shape (n,), oscillates too fast to be drawn as a line across that many columns."""
-    return 0.5 * _turns(values) * LEAST_PER_PERIOD > columns
+def is_too_fast(t: Floats, values: Floats, columns: float, visible: float) -> bool:
+    """Return whether a curve oscillates too fast to be drawn as a line.
+
+    Parameters
+    ----------
+    t, values : arrays, shape (n,)
+        Times in increasing order, and the values of the curve there.
+    columns : float
+        The width of the panel in pixels.
+    visible : float
+        The least change that can be seen, in the unit of the values; smaller oscillations, such as rounding errors, do
+        not count.
+    """
+    if 0.5 * _turns(values) * LEAST_PER_PERIOD <= columns:
+        return False
+    _, low, high = envelope(t, values, columns)
+    return bool(np.median(high - low) > visible)
 
 
 def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats, Floats]:
@@ -121,29 +136,39 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
     earlier one, it is dashed. The linear or logarithmic scale of the axes must be set before.
     """
     size = columns_of(axes)
-    fast = [len(curve) > 2 and is_too_fast(curve[np.isfinite(curve)], size[0]) for curve in curves]
     scale = np.log10 if axes.get_yscale() == "log" else np.asarray
-    slow = [number for number in range(len(curves)) if not fast[number]]
-    heights = [scale(curves[number]) for number in slow]
-    extremes = [(np.nanmin(curve), np.nanmax(curve)) for curve in map(scale, curves) if np.isfinite(curve).any()]
+    heights = [scale(curve) for curve in curves]
+    extremes = [(np.nanmin(curve), np.nanmax(curve)) for curve in heights if np.isfinite(curve).any()]
     height = max((high for _, high in extremes), default=1.0) - min((low for low, _ in extremes), default=0.0)
-    parts = dict(zip(slow, hidden_parts(heights, size, 1.1 * height or 1.0), strict=True))
+    height = max(height, ROUNDING * max((max(abs(low), abs(high)) for low, high in extremes), default=0.0))
+    fast = [_is_band(t, curve, size, height) for curve in heights]
+    slow = [number for number in range(len(curves)) if not fast[number]]
+    hidden = hidden_parts([heights[number] for number in slow], size, 1.1 * height or 1.0)
+    parts = dict(zip(slow, hidden, strict=True))
     for number, (curve, name) in enumerate(zip(curves, names, strict=True)):
-        style = {"color": colours[number % len(colours)], "linewidth": widths[min(number, len(widths) - 1)]}
+        colour, width = colours[number % len(colours)], widths[min(number, len(widths) - 1)]
         if fast[number]:
-            _draw_band(axes, t, curve, name, size[0], style["color"], HATCHES[sum(fast[:number]) % len(HATCHES)])
+            _draw_band(axes, t, curve, name, size[0], colour, HATCHES[sum(fast[:number]) % len(HATCHES)])
             continue
         if not np.isfinite(curve).any():
             axes.plot([], [], " ", label=name)
             continue
+        dashes = (0, (DASH / width, (DASH + number) / width))
         label = name
         for part, is_hidden in _pieces(curve, parts[number]):
-            pattern = {"linestyle": (0, (DASH, DASH + number)), "dash_capstyle": "butt"} if is_hidden else {}
-            axes.plot(t, part, label=label, **style, **pattern)
+            axes.plot(t, part, color=colour, linewidth=width, label=label, linestyle=dashes if is_hidden else "-",
+                      dash_capstyle="butt")  # fmt: skip
             label = f"_{name}"  # an underscore keeps the second part out of the legend
     if any(fast):
         axes.plot([], [], " ", label=BAND_NOTE)
     axes.grid(True)
+
+
+def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
+    known = np.isfinite(curve)
+    if np.count_nonzero(known) < 3:
+        return False
+    return is_too_fast(t[known], curve[known], size[0], 2.0 * NEAR * height / size[1])
 
 
 def _draw_band(axes: Any, t: Floats, curve: Floats, name: str, columns: float, colour: Any, hatch: str) -> None:

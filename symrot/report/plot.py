@@ -53,8 +53,8 @@ def dense(trajectory: Any) -> Any:
     if low == high:
         return trajectory
     radians = _fastest(trajectory) * (high - low)
-    wanted = max(float(FEWEST), PER_RADIAN * radians, float(PER_STEP * trajectory.stats.accepted))
-    count = int(min(wanted, MOST))
+    sufficient = max(float(FEWEST), PER_RADIAN * radians, float(PER_STEP * trajectory.stats.accepted))
+    count = int(min(sufficient, MOST))
     times = np.linspace(low, high, count)
     if PER_RADIAN * radians > MOST:
         places = np.arange(1, count - 1)
@@ -86,7 +86,7 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 def _legend(axes: Any) -> None:
     count = len(axes.get_legend_handles_labels()[1])
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=1.4, columnspacing=1.2)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
@@ -151,7 +151,9 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     axes.set_yscale("log")
     axes.set_autoscaley_on(False)  # the limits are set below, because a single flat line would give none
     items = sorted(trajectory.invariants, key=lambda item: item.name != "quaternion norm")  # least informative: behind
-    curves, names, colours = [], [], []
+    curves: list[Floats] = []
+    names: list[str] = []
+    colours: list[str] = []
     for item in items:
         change = np.maximum.accumulate(np.abs(item.values - item.values[0])) / (item.scale or 1.0)
         curves.append(np.where(change > 0, change, np.nan))
@@ -168,7 +170,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
         axes.text(0.5, 0.65, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
                   ha="center", color=GREY)  # fmt: skip
         return
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=5, handlelength=1.6, columnspacing=1.0)
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0, columnspacing=1.0)
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
@@ -277,7 +279,7 @@ def figure(trajectory: Any, tolerance: float) -> Any:
     names = [name for name in OVER_TIME if name not in _left_out(trajectory)]
     height = 8.0 if len(names) < 4 else 10.0  # inches
     page = Figure(figsize=(12.0, height))
-    top, bottom = 1.0 - 1.08 / height, 1.0 / height
+    top, bottom = 1.0 - 1.08 / height, 1.05 / height
     left = page.add_gridspec(len(names), 1, left=0.065, right=0.6, top=top, bottom=bottom, hspace=0.48)
     paths = [name for name in ON_SPHERES if name not in _left_out(trajectory)]
     right = page.add_gridspec(len(paths), 1, left=0.7, right=0.985, top=top, bottom=0.76 / height, hspace=0.3)

@@ -23,7 +23,8 @@ CURVES = 12
 FINEST = 241  # grid points across the disc for level curves
 MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or SVG; longer paths become an image
 SHADES = 240  # colours along a path
-LONGEST = 0.5  # rad: samples of a path that are farther apart are drawn as points, for a chord would show nothing
+LONGEST = 0.5  # radii: farther samples of a path are not joined, for a chord would show nothing
+MOST_GAPS = 0.01  # fraction of the samples
 CLOSE = 0.62  # radii: a path seen from above its middle that is smaller than this fills a part of the sphere only
 MARGIN = 1.2  # width of an enlarged drawing, relative to the path's
 GRIDS = (30.0, 15.0, 10.0, 5.0)  # degrees between grid lines
@@ -148,11 +149,13 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: 
     return has_levels
 
 
-def _path(axes: Any, points: Floats, joined: bool, front: NDArray[np.bool_] | None = None, width: float = 1.3) -> None:
+def _path(
+    axes: Any, points: Floats, gaps: NDArray[np.bool_], front: NDArray[np.bool_] | None = None, width: float = 1.3
+) -> None:
     """Draw a path in the plane, points of shape (n, 2), coloured from dark at its start to light at its end.
 
-    ``joined`` says whether the points are close enough to be joined by a line; ``front`` marks the points in front of
-    the sphere.
+    ``gaps`` marks the points that are too far from the next one to be joined with it; if there are many, the points are
+    not joined at all. ``front`` marks the points in front of the sphere.
     """
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
@@ -160,12 +163,15 @@ def _path(axes: Any, points: Floats, joined: bool, front: NDArray[np.bool_] | No
     count = len(points)
     near = np.ones(count, dtype=bool) if front is None else front
     shades = np.arange(count) * SHADES // max(count, 1)
-    starts = np.flatnonzero(np.concatenate([[True], (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0)]))
+    changes = (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0) | gaps[:-1]
+    starts = np.flatnonzero(np.concatenate([[True], changes]))
     colours = colormaps["viridis"](0.82 * shades / (SHADES - 1))
     colours[~near, :3] = 1.0 - BACK * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
     many = count > MOST_VECTORS
-    if joined:
-        pieces = [points[start : stop + 1] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
+    if np.mean(gaps) < MOST_GAPS:
+        stops = np.append(starts[1:], count)
+        ends = np.where(gaps[stops - 1], stops, stops + 1)  # a piece reaches the first point of the next one
+        pieces = [points[start:end] for start, end in zip(starts, ends, strict=True)]
         for side, depth in ((False, 5), (True, 6)):
             chosen = [number for number, start in enumerate(starts) if near[start] == side]
             lines = LineCollection([pieces[number] for number in chosen], colors=colours[starts[chosen]], zorder=depth,
@@ -179,10 +185,10 @@ def _path(axes: Any, points: Floats, joined: bool, front: NDArray[np.bool_] | No
                   markeredgewidth=0.8, zorder=8, label=name)  # fmt: skip
 
 
-def _is_joined(directions: Floats, extent: float = 1.0) -> bool:
-    """Return whether a path of this extent, rad, is sampled closely enough to be drawn as a line."""
+def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
+    """Return which directions of a path of this extent, rad, are too far from the next one to be joined with it."""
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
-    return not len(steps) or float(np.quantile(steps, 0.99)) <= LONGEST * extent
+    return np.append(steps > LONGEST * extent, False)
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
@@ -194,7 +200,7 @@ def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels:
     along *= np.sign(along[second]) or 1.0
     size, unit = prefixed(extent, "rad")
     points = np.stack([directions @ across, directions @ along], axis=1) / size
-    _path(axes, points, _is_joined(directions, extent))
+    _path(axes, points, _gaps(directions, extent))
     axes.set_xlabel(f"toward {labels[first]} ({unit})")
     axes.set_ylabel(f"toward {labels[second]} ({unit})")
     half = 1.1 * extent / size
@@ -255,7 +261,7 @@ def draw_directions(
         whole = axes.inset_axes((*_empty_corner(x, y, window), INSET, INSET), zorder=10)
         whole.set_axis_off()
         _sphere(whole, directions, _eye(directions), labels, Window(half=1.1 * ROOM), is_inset=True)
-    axes.text(0.5, -0.02, "; ".join(notes), transform=axes.transAxes, ha="center", va="top", color=GREY)
+    axes.text(0.5, -0.02, "\n".join(notes), transform=axes.transAxes, ha="center", va="top", color=GREY)
 
 
 def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
@@ -281,5 +287,4 @@ def _sphere(axes: Any, directions: Floats, view: Floats, labels: tuple[str, ...]
     axes.set_ylim(window.centre[1] - window.half, window.centre[1] + window.half)
     _globe(axes, view, labels, window, fontsize=7.0 if is_inset else None)
     x, y, z = view @ directions.T
-    step = max(1, len(directions) // MOST_VECTORS) if is_inset else 1
-    _path(axes, np.stack([x, y], axis=1)[::step], _is_joined(directions), (z >= 0)[::step], 0.7 if is_inset else 1.3)
+    _path(axes, np.stack([x, y], axis=1), _gaps(directions), z >= 0, 0.7 if is_inset else 1.3)

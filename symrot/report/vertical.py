@@ -45,8 +45,9 @@ def vertical_angles(trajectory: Any) -> VerticalAngles:
     """Return the angles to the vertical of a motion whose scene has one; see :func:`has_vertical`.
 
     Under gravity it is the angle of the centre of mass, seen from the fixed point, to the upward vertical. Under a
-    gravity gradient it is the angle of the long axis, which is the axis of least inertia, to the local vertical, with its parts in the plane of
-    the orbit and out of it; the axis points to the side of the local vertical at the start.
+    gravity gradient it is the angle of the long axis, which is the axis of least inertia, to the local vertical, with
+    its parts in the plane of the orbit and out of it. The axis is taken in the direction that is closer to the local
+    vertical at the start.
     """
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":
