@@ -170,7 +170,9 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
         axes.text(0.5, 0.65, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
                   ha="center", color=GREY)  # fmt: skip
         return
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0, columnspacing=1.0)
+    handles = sorted(axes.get_legend_handles_labels()[0], key=lambda handle: handle.get_label() == "quaternion norm")
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0,
+                columnspacing=1.0)  # fmt: skip
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:

@@ -18,7 +18,7 @@ ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # viewpoint: above the eq
 SMALL, STILL = 0.2, 1e-12  # rad: smaller paths are drawn on a plane; paths smaller than STILL as a point
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "\N{GREEK SMALL LETTER MU}"), (1e-9, "n"), (1e-12, "p"))
 ROOM = 1.26  # half the width of a drawing, in radii
-BACK = 0.22  # opacity of curves behind the sphere
+BACK, BACK_PATH = 0.22, 0.45  # strength of thin curves and of a path behind the sphere
 CURVES = 12
 FINEST = 241  # grid points across the disc for level curves
 MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or SVG; longer paths become an image
@@ -166,7 +166,8 @@ def _path(
     changes = (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0) | gaps[:-1]
     starts = np.flatnonzero(np.concatenate([[True], changes]))
     colours = colormaps["viridis"](0.82 * shades / (SHADES - 1))
-    colours[~near, :3] = 1.0 - BACK * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
+    strong = colours[:, :3].copy()
+    colours[~near, :3] = 1.0 - BACK_PATH * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
     many = count > MOST_VECTORS
     if np.mean(gaps) < MOST_GAPS:
         stops = np.append(starts[1:], count)
@@ -181,7 +182,7 @@ def _path(
     else:
         axes.scatter(*points.T, s=0.5, c=colours, linewidths=0.0, zorder=6, rasterized=many)
     for place, marker, name in ((0, "o", "start"), (-1, "s", "end")):
-        axes.plot(*points[place], marker, markersize=5, markerfacecolor=colours[place][:3], markeredgecolor="white",
+        axes.plot(*points[place], marker, markersize=5, markerfacecolor=strong[place], markeredgecolor="white",
                   markeredgewidth=0.8, zorder=8, label=name)  # fmt: skip
 
 
