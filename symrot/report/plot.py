@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from symrot import __version__
 from symrot.errors import InputError
-from symrot.report.curves import draw_curves
+from symrot.report.curves import columns_of, draw_curves
 from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
 from symrot.report.vertical import has_vertical, vertical_angles
@@ -30,6 +30,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 FEWEST, MOST = 4000, 120_000  # limits of the number of samples in a plot
 PER_STEP, PER_RADIAN = 20, 16  # samples per step of the method, and per radian of the fastest rotation
 TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
+WIDE = 900.0  # columns
 GOLDEN = (5.0**0.5 - 1.0) / 2.0
 DRIFT_WIDTHS = (1.6, 1.3)  # points
 QUIET = 0.01  # a component that changes by less than this fraction of its size may be written as text, not drawn
@@ -84,9 +85,21 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
     return trajectory.t / size, unit
 
 
+def _is_wide(axes: Any) -> bool:
+    """Return whether a title on the left and a legend on the right fit beside each other above the axes."""
+    from matplotlib import rcParams
+
+    return bool(rcParams["axes.titlelocation"] == "left" and columns_of(axes)[0] >= WIDE)
+
+
 def _legend(axes: Any) -> None:
+    """Name the curves above the axes, or in a corner of axes that are too narrow for it."""
     count = len(axes.get_legend_handles_labels()[1])
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
+    if _is_wide(axes):
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
+    else:
+        axes.legend(loc="upper right", ncols=count, handlelength=1.6, columnspacing=0.8, fontsize="small",
+                    frameon=True, framealpha=0.85)  # fmt: skip
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
@@ -171,8 +184,12 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
                   ha="center", color=GREY)  # fmt: skip
         return
     handles = sorted(axes.get_legend_handles_labels()[0], key=lambda handle: handle.get_label() == "quaternion norm")
-    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0,
-                columnspacing=1.0)  # fmt: skip
+    if _is_wide(axes):
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0,
+                    columnspacing=1.0)  # fmt: skip
+    else:
+        axes.legend(handles=handles, loc="center right", ncols=2, handlelength=1.6, columnspacing=0.8, fontsize="small",
+                    frameon=True, framealpha=0.85)  # fmt: skip
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:

@@ -7,10 +7,12 @@ import symrot
 
 pytest.importorskip("matplotlib")
 
+from matplotlib import rc_context
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from symrot.report import plot, sphere
+from symrot.report.picture import STYLE
 from symrot.report.vertical import has_vertical, local_vertical, vertical_angles
 
 
@@ -117,7 +119,7 @@ def ring(colatitude, points=2000):
     ], axis=1)  # fmt: skip
 
 
-@pytest.mark.parametrize("degrees", [0.001, 3.0, 12.0, 20.0, 30.0, 37.0])
+@pytest.mark.parametrize("degrees", [0.001, 3.0, 12.0, 20.0, 37.0, 48.0])
 def test_a_small_path_is_enlarged_until_it_fills_its_panel(degrees):
     axes = Figure().add_subplot()
     sphere.draw_directions(axes, ring(np.radians(degrees)), ("x", "y", "z"))
@@ -127,7 +129,7 @@ def test_a_small_path_is_enlarged_until_it_fills_its_panel(degrees):
     assert (np.ptp(points, axis=0) > 0.75 * (high - low)).all()
 
 
-@pytest.mark.parametrize("degrees", [50.0, 90.0, 140.0])
+@pytest.mark.parametrize("degrees", [50.0, 90.0, 130.0])
 def test_a_wide_path_is_drawn_on_the_whole_sphere(degrees):
     axes = Figure().add_subplot()
     sphere.draw_directions(axes, ring(np.radians(degrees)), ("x", "y", "z"))
@@ -163,3 +165,24 @@ def test_drift_never_falls_and_names_what_does_not_change():
     for line in axes.lines:
         values = np.asarray(line.get_ydata(), dtype=float)
         assert (np.diff(values[np.isfinite(values)]) >= 0).all()
+
+
+@pytest.mark.parametrize(("width", "place"), [(5.0, "left"), (5.0, "center"), (9.0, "left"), (9.0, "center")])
+@pytest.mark.parametrize("panel", ["attitude", "rates", "vertical"])
+def test_a_legend_never_covers_the_title(width, place, panel):
+    with rc_context({"axes.titlelocation": place}):
+        page = Figure(figsize=(width, 4.0))
+        axes = symrot.propagate("gravity_gradient_satellite").plot(page.add_subplot(), panel)
+        page.draw_without_rendering()
+        title = next(text for text in (axes.title, axes._left_title) if text.get_text())
+        assert not axes.get_legend().get_window_extent().overlaps(title.get_window_extent())
+
+
+@pytest.mark.parametrize("scene", ["earth_wobble", "gravity_gradient_satellite", "heavy_top_loops"])
+def test_no_legend_of_a_page_covers_a_title(scene):
+    with rc_context(STYLE):
+        page = plot.figure(plot.dense(symrot.propagate(scene)), 1e-12)
+        page.draw_without_rendering()
+        legends = [axes.get_legend().get_window_extent() for axes in page.axes if axes.get_legend()]
+        titles = [axes._left_title.get_window_extent() for axes in page.axes]
+        assert len(legends) >= 3 and not any(legend.overlaps(title) for legend in legends for title in titles)
