@@ -45,13 +45,15 @@ def require_matplotlib(option: str = "--plot") -> None:
 
 
 def dense(trajectory: Any) -> Any:
-    """Return a motion at as many times as a picture shows, from its dense solution.
+    """Return a motion at as many times as a picture shows, if it has a dense solution; otherwise its own samples.
 
     The times are evenly spaced. If the motion has more rotations than samples can follow, they are shifted by golden
     fractions of their distance, so that they do not keep step with the rotation and meet all its phases.
     """
+    from symrot.propagation.trajectory import Trajectory
+
     low, high = float(np.min(trajectory.t)), float(np.max(trajectory.t))
-    if low == high:
+    if low == high or not isinstance(trajectory, Trajectory):  # motions of ensembles and of files have samples alone
         return trajectory
     radians = _fastest(trajectory) * (high - low)
     sufficient = max(float(FEWEST), PER_RADIAN * radians, float(PER_STEP * trajectory.stats.accepted))
@@ -237,7 +239,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Parameters
     ----------
     trajectory : Trajectory
-        The motion. The panel draws its dense solution between its first and its last sample.
+        The motion. The panel draws its dense solution between its first and its last sample; of a motion of an
+        ensemble or of a file, it joins the samples.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
@@ -269,6 +272,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     require_matplotlib("plot")
     if not len(trajectory):
         raise InputError("plot: expected a trajectory with samples, got one without")
+    if np.ndim(trajectory.omega) != 2:
+        raise InputError("plot: expected one motion, got an ensemble; plot one of its motions, such as ensemble[0]")
     if panel == "vertical" and not has_vertical(trajectory.scene):
         raise InputError("panel: expected a scene with one torque of gravity or gravity_gradient for 'vertical'")
     if panel in ("attitude", "vertical", "space"):

@@ -186,3 +186,15 @@ def test_no_legend_of_a_page_covers_a_title(scene):
         legends = [axes.get_legend().get_window_extent() for axes in page.axes if axes.get_legend()]
         titles = [axes._left_title.get_window_extent() for axes in page.axes]
         assert len(legends) >= 3 and not any(legend.overlaps(title) for legend in legends for title in titles)
+
+
+def test_a_motion_without_a_dense_solution_is_drawn_from_its_samples(tmp_path):
+    """Motions of ensembles and of files have samples alone; an ensemble as a whole is refused in a sentence."""
+    ensemble = symrot.propagate_ensemble("t_handle", omega=np.array([[0.01, 0, 12], [0.02, 0, 12]]))
+    motion = symrot.propagate("t_handle")
+    motion.save(tmp_path / "motion.npz")
+    for drawn in (ensemble[1], symrot.load(tmp_path / "motion.npz")):
+        axes = symrot.plot(drawn, Figure().add_subplot())
+        assert {len(line.get_xdata()) for line in axes.lines if len(line.get_xdata())} == {len(drawn.t)}
+    with pytest.raises(symrot.InputError, match="plot: expected one motion, got an ensemble"):
+        symrot.plot(ensemble, Figure().add_subplot())
