@@ -1,11 +1,24 @@
-"""The exceptions of symrot. Each message is one sentence: the place, the expected value and the value that arrived.
+"""The exceptions of symrot, and hints for their messages.
+
+Each message is one sentence: the place, the expected value and the value that arrived.
 
 The command line prints the message and exits with code 2, or with code 1 if an audit fails. :class:`InputError` is also
 a ``ValueError``, because an argument has an unusable value. The other exceptions are no ``ValueError``: they report the
 outcome of a computation, which an ``except ValueError`` must not hide.
 """
 
-__all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError", "complaint"]
+from collections.abc import Iterable
+
+__all__ = [
+    "CertificateError",
+    "CompilerError",
+    "InputError",
+    "PropagationError",
+    "SymrotError",
+    "complaint",
+    "nearest",
+    "with_hint",
+]
 
 
 class SymrotError(Exception):
@@ -81,3 +94,17 @@ def complaint(source: str, where: str, position: int, expected: str) -> InputErr
     excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
     prefix = f"{where}: " if where else ""
     return InputError(f"{prefix}expected {expected} at position {position + 1}, near {excerpt!r}")
+
+
+def nearest(word: object, known: Iterable[str]) -> str:
+    """Return ``"did you mean 'x'?"``, where x is the known word most similar to a mistyped word, or an empty text."""
+    from difflib import get_close_matches  # only on the way to an error
+
+    matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
+    return f"did you mean '{matches[0]}'?" if matches else ""
+
+
+def with_hint(message: str, word: object, known: Iterable[str]) -> str:
+    """Return a message, followed by the known word that is most similar to a mistyped one, if there is any."""
+    hint = nearest(word, known)
+    return f"{message} ({hint})" if hint else message

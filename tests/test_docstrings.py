@@ -186,6 +186,7 @@ def test_the_python_page_lists_every_public_name():
 
 
 OPTIONAL = {
+    "argcomplete",
     "matplotlib",
     "mpl_toolkits",
     "PIL",

@@ -7,7 +7,7 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 
 if TYPE_CHECKING:
     from symrot.proof.derivation import Derivation
@@ -123,7 +123,10 @@ def derivation(name: str) -> "Derivation":
     6
     """
     if name not in names():
-        raise InputError(f"expected the name of a derivation, one of {', '.join(names())}; got {name!r}")
+        hint = nearest(name, names())
+        known = "" if hint else f", one of {', '.join(names())}"
+        after = f" ({hint} `symrot derive` lists all)" if hint else ""
+        raise InputError(f"expected the name of a derivation{known}, got {str(name)[:60]!r}{after}")
     module = module_of(name)
     page: Derivation = import_module(module).derive()
     page.file = f"{module.replace('.', '/')}.py"

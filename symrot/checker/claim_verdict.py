@@ -58,6 +58,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
                 decision, verdict = named or (decision, verdict)
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
+            if other_verdict is None and repair and is_false and claim.implied and not verdict.repairs:
+                verdict = _near_relation(claim, verdict)
     except TimeUp:
         other_verdict = None
         if verdict is None:
@@ -98,21 +100,52 @@ def _on_name(
 
     The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
     """
+    if claim.context.sign_of_products == "plus":
+        from symrot.checker.context.product_signs import in_claim, with_minus_sign
+
+        result = _on_name(with_minus_sign(claim), repair, formula_of)
+        return result and (None, replace(in_claim(result[1]), text=claim.text))
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
+    from symrot.checker.context.sizes import by_other_sizes
     from symrot.checker.recognition.naming import verdict_on_name
 
     start = perf_counter()
-    with _place_of(claim):
-        verdict = verdict_on_name(claim, named, repair)
-        if claim.context:
+
+    def judge(one: Claim, own: NamedFormula, with_repair: bool = False) -> Verdict:
+        verdict = verdict_on_name(one, own, with_repair)
+        if one.context:
             from symrot.checker.context.decision import in_context
 
-            verdict = in_context(claim, named, verdict)
-    if claim.hypotheses and verdict.verdict in ("false", "doubtful"):
-        verdict = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+            verdict = in_context(one, own, verdict)
+        return verdict
+
+    with _place_of(claim):
+        verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
+        verdict = _on_motion(claim, verdict)
+        if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
+            by_name = verdict_on_name(claim, named, repair) if claim.context else verdict
+            by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
+            verdict = by_name if by_name.verdict == "doubtful" else by_hypotheses
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict with the diagnosis and the repairs that make a false claim a known relation."""
+    from symrot.checker.recognition.naming import verdict_near_relation
+
+    nearest = verdict_near_relation(claim)
+    return verdict if nearest is None else replace(verdict, diagnosis=nearest.diagnosis, repairs=nearest.repairs)
+
+
+def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim by the relations between rates, momenta and energies, if these decide it."""
+    if claim.hypotheses or claim.define or claim.context.obscure:
+        return verdict
+    from symrot.checker.context.motion import by_motion
+
+    return by_motion(claim, verdict)
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
@@ -142,6 +175,9 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
             decision = decide_value(claim)
         else:
             decision = for_positive_bases(decide_equation(claim.equation), claim.equation)
+            if decision.verdict == "undecided" and (expanded := claim.expanded) is not claim:
+                equation = expanded.equation  # the abbreviations, such as c1 = cos(alpha), are replaced by formulas
+                decision = for_positive_bases(decide_equation(equation), equation)
     return decision, _completed(claim, verdict_of_decision(decision, claim.text, start), start)
 
 

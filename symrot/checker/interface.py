@@ -15,11 +15,12 @@ from symrot.checker.claim.claims import (
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.context.context import Context, read_context
+from symrot.checker.copied_signs import with_plain_signs
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import dimensions_of_formulas
-from symrot.checker.units.conversion import measured_text
+from symrot.checker.units.conversion import measured_text, numbers_of_latex
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
@@ -128,10 +129,17 @@ def _checked(
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
-        left = _without_backticks(left)
+        typed = _without_backticks(left).lstrip()  # places in the text count from its first character
+        left = with_plain_signs(typed)
         if is_latex(left) and measured_text(left) is None:
-            return _on_latex(left, assume, units, repair, stated)
-        return verdict_on_text(left, assume, units, repair, stated)
+            left = numbers_of_latex(left).lstrip() or left
+        if is_latex(left) and measured_text(left) is None:
+            verdict = _on_latex(left, assume, units, repair, stated)
+        else:
+            verdict = verdict_on_text(left, assume, units, repair, stated)
+        if left == typed:
+            return verdict
+        return replace(verdict, text=typed.strip(), notes=(f"it is read as {left.strip()}", *verdict.notes))
     if right is None and getattr(left, "rel_op", "") == "==":
         left, right = left.args
     if right is None:

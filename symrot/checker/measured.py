@@ -19,7 +19,7 @@ from symrot.errors import InputError
 __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
-DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+", r"[1-9]\d*[1-9]"
+DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
 """Decimal numbers, and whole numbers that may be rounded: 37, but not 40, whose count of digits is unclear."""
 
 TURN = 7
@@ -99,7 +99,8 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
         if other_digits and len(other_digits) > len(digits):
             continue
         value = product([_in_si(other, factors), Node("inv", None, (factors[unit],))])
-        if not is_decimal and not _is_irrational(claim, value):
+        is_percentage = measured.units[unit].text == "%"
+        if not is_decimal and not is_percentage and not _is_irrational(claim, value):
             continue
         worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
         verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))

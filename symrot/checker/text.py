@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
+from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, functions_of_time, relation_text
 from symrot.checker.claim.lines import claims_of_reading
@@ -17,6 +18,7 @@ from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.recognition.together import fit_together
@@ -41,6 +43,8 @@ WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "r
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
 INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
+
+INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
 
@@ -105,7 +109,7 @@ def verdict_on_readings(
             break
         try:
             verdict = verdict_on_reading(
-                reading, notation(reading), source, assume, units, repair and not verdicts, stated
+                reading, notation(reading), source, assume, units, repair and all(map(_is_unknown, verdicts)), stated
             )
         except InputError as reason:
             refusal = refusal or reason
@@ -118,8 +122,10 @@ def verdict_on_readings(
         raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
-    if verdicts[0][1].verdict == "definition":
-        verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than an unknown one
+    if _is_unknown(verdicts[0]) and not first:
+        first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "doubtful"), 0)
+    if _is_unknown(verdicts[0]):
+        verdicts.insert(0, verdicts.pop(first))  # a known formula, or one near it, is likelier than an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
     if refusal is not None and not of_usual:
@@ -131,6 +137,11 @@ def verdict_on_readings(
         notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
+
+
+def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
+    """Return whether the verdict on a reading is that it may be a definition."""
+    return reading[1].verdict == "definition"
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
@@ -242,6 +253,8 @@ def verdict_on_reading(
 
     ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
     """
+    if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
+        return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
     parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
     several = len(parts) > 1
@@ -262,6 +275,25 @@ def verdict_on_reading(
     return replace(verdict, text=source.strip(), reading=echo, context=stated.echo, notes=notes)
 
 
+def _on_inequality(
+    reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
+    stated: Context,
+) -> Verdict:  # fmt: skip
+    """Return the verdict on a reading that is one inequality."""
+    (chain,) = reading.lines
+    (sign,) = chain.signs
+    equation = replace(reading, lines=(replace(chain, signs=("==",)),))
+    ((claim,),) = claims_of_reading(equation, source, assume, units, stated)
+    left, right = chain.sides
+    verdict = verdict_on_inequality(claim, sign, notation.relation((OPPOSITE[sign], left, right)))
+    conditions = tuple(notation.condition(text) for text in verdict.conditions)
+    echo = _text_of(reading, notation)
+    return replace(
+        verdict, text=source.strip(), reading=echo if _differs(echo, source) else "", context=stated.echo,
+        conditions=conditions, notes=(*claim.notes, *verdict.notes),
+    )  # fmt: skip
+
+
 def _differs(echo: str, source: str) -> bool:
     """Return whether two texts differ in more than blanks."""
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
@@ -273,6 +305,8 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
+    if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
+        verdict = Verdict("definition", reason=INDEX_CONDITION, notes=verdict.notes, dimension=verdict.dimension)
     repairs = tuple(
         repair if repair.code in AS_TYPED else _marked(repair, claim, notation) for repair in verdict.repairs
     )

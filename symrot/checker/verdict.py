@@ -53,6 +53,8 @@ class Repair:
         Start and end of each piece of the text that differs from the claim.
     entry : (int, int) or None
         Row and column, from 1, of the only entry that differs, if a side is a matrix.
+    requires : str
+        The range in which the formula holds, such as ``"-pi < a <= pi"``; empty if it holds wherever it is defined.
 
     Examples
     --------
@@ -71,6 +73,7 @@ class Repair:
     edited: dict[str, str] = field(default_factory=dict)
     changed: tuple[tuple[int, int], ...] = ()
     entry: tuple[int, int] | None = None
+    requires: str = ""
 
     @property
     def html(self) -> str:
@@ -84,8 +87,9 @@ class Repair:
 
     @property
     def note(self) -> str:
-        """The code of the fault in brackets, and the entry of a matrix that differs."""
-        return f"[{self.code}, entry {self.entry}]" if self.entry else f"[{self.code}]"
+        """The code of the fault in brackets, the entry of a matrix that differs, and the range in which it holds."""
+        entry = f", entry {self.entry}" if self.entry else ""
+        return f"[{self.code}{entry}{f', if {self.requires}' * bool(self.requires)}]"
 
 
 @dataclass(frozen=True)

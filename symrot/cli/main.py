@@ -29,7 +29,7 @@ from symrot.cli.output import (
     say,
     say_json,
 )
-from symrot.errors import InputError, PropagationError, SymrotError
+from symrot.errors import InputError, PropagationError, SymrotError, with_hint
 from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
@@ -528,11 +528,21 @@ def _parser(only: str = "") -> _Parser:
 def _check_command(arguments: Sequence[str]) -> None:
     """Raise InputError for an unknown command; the message suggests the most similar command."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
-        from symrot.scene.reader import nearest
-
-        hint = nearest(arguments[0], COMMANDS)
         message = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
-        raise InputError(f"{message} ({hint})" if hint else message)
+        raise InputError(with_hint(message, arguments[0], COMMANDS))
+
+
+def _check_unknown(command: str, unknown: Sequence[str]) -> None:
+    """Raise InputError for the first word that a command does not know; it suggests the most similar option."""
+    if not unknown:
+        return
+    own = _Parser()
+    COMMANDS[command][2](own)
+    options = [option for action in own._actions for option in action.option_strings]
+    word = unknown[0].partition("=")[0]
+    kind = "an option" if word.startswith("-") else "no further word"
+    message = f"{command}: expected {kind} of `symrot {command} --help`, got {word[:60]!r}"
+    raise InputError(with_hint(message, word, options) if word.startswith("-") else message)
 
 
 def _silence(stream: Any) -> None:
@@ -565,7 +575,14 @@ def main(argv: Sequence[str] | None = None) -> int:
             _parser().print_help(sys.stderr)
             return USAGE_ERROR
         _check_command(arguments)
-        options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
+        command = arguments[0] if arguments[0] in COMMANDS else ""
+        parser = _parser(command)
+        if "_ARGCOMPLETE" in os.environ:  # the shell asks for words that may follow
+            from symrot.cli.completion import complete
+
+            complete(parser)
+        options, unknown = parser.parse_known_args(arguments)
+        _check_unknown(command, unknown)
         code: int = options.function(options)
         sys.stdout.flush()
         return code

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from symrot.build import cache as library
 from symrot.closed_form.registry import FORMS, ClosedForm, exact_form
-from symrot.errors import CompilerError, InputError
+from symrot.errors import CompilerError, InputError, with_hint
 from symrot.planning.plan import Plan
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 
@@ -81,7 +81,8 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
         method_name(solver)
     elif name not in METHODS or colon or name == "constant":
         listed = ", ".join(name for name in METHODS if name != "constant")
-        raise InputError(f"method: expected one of {listed} or scipy:NAME, got {method!r}")
+        message = f"method: expected one of {listed} or scipy:NAME, got {method!r}"
+        raise InputError(with_hint(message, method, METHODS))
     if not plan.states:
         return choose_method(plan)
     if name in ("taylor", "dop853") and (reason := library.missing()):

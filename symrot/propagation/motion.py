@@ -366,7 +366,7 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
+        """Return the states at times since the epoch, shape (n, N), and the number of steps and evaluations."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at times of the scene, shape (n, N), and the cost of the motion.

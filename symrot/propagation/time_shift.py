@@ -143,7 +143,9 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function of an epoch, s, that returns rates which count time from the epoch, and their parameters.
+    """Return a function that takes an epoch, in s, and returns the rates and their parameters.
+
+    Time in these rates is counted from the epoch.
 
     ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
     ``start`` are arguments of :class:`ShiftedParameters`. ``make`` converts plan and kernel to the rates: to the

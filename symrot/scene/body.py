@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symrot.errors import nearest
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import NEGLIGIBLE
 from symrot.inertia.composite import Part, mass_properties
@@ -16,7 +17,7 @@ from symrot.inertia.principal import Principal, principal_axes, require_admissib
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
 from symrot.scene.attitude import Matrix, Vector, read_attitude
-from symrot.scene.reader import Entry, Reader, choice, fail, flag, nearest, number, read_table, table, text, vector
+from symrot.scene.reader import Entry, Reader, choice, fail, flag, number, read_table, table, text, vector
 
 __all__ = ["Body", "read_body"]
 

@@ -15,11 +15,10 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
-from symrot.scene.reader import nearest
 from symrot.scene.torque import Torque
 
 __all__ = ["changed", "replaces_shapes"]

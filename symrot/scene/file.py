@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from symrot.dynamics.torque_kinds import TABLE_KIND
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.files.reading import read_input
 from symrot.formula.switches import has_switches
 from symrot.formula.tree import parse
-from symrot.scene.reader import nearest
 
 __all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_toml", "shipped_names"]
 
@@ -74,7 +73,8 @@ def find_scene(source: str | Path) -> Path:
     except OSError as reason:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
     label = str(source) if str(source).isprintable() else repr(str(source))
-    hints = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
+    hint = nearest(path.stem, names)
+    hints = f"{hint} `symrot scenes` lists all" if hint else f"the shipped scenes are {', '.join(names)}"
     raise InputError(f"{label}: expected a scene or a scene file, but there is none of this name ({hints})")
 
 

@@ -5,11 +5,11 @@ A reader is a function ``(value, where) -> result`` that checks a value of a sce
 such as ``"tumbling.toml: body.mass"``. Standard library only.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple, NoReturn
 
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
 
 __all__ = [
@@ -52,14 +52,6 @@ def fail(where: str, expectation: str, value: object = ..., reason: str = "") ->
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
-
-
-def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``"did you mean 'x'?"``, where x is the known word most similar to a mistyped word, or an empty text."""
-    from difflib import get_close_matches  # only on the way to an error
-
-    matches = get_close_matches(str(word)[:80], list(known), 1, 0.5)
-    return f"did you mean '{matches[0]}'?" if matches else ""
 
 
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:

@@ -13,9 +13,8 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
-from symrot.scene.reader import nearest
 from symrot.scene.scene import Scene
 from symrot.sweeps.laws import Distribution, Grid, Law, read_law
 from symrot.sweeps.points import SAMPLINGS, unit_points

@@ -12,9 +12,8 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.reader import nearest
 
 __all__ = ["DISTRIBUTIONS", "GRIDS", "Distribution", "Grid", "Law", "read_law"]
 

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.conventions import parse_sequence
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
 from symrot.results.labels import COMPONENTS, FRAMES
-from symrot.scene.reader import nearest
 from symrot.scene.scene import Scene
 from symrot.scene.tables import QUANTITIES, Output
 

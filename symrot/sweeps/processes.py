@@ -47,7 +47,7 @@ def _unpacked(text: bytes) -> Job:
 
 
 def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
-    """Return a chunk of a job in bytes; a process unpacks the job once, and the scene then has its cached values."""
+    """Compute one chunk of a job that is given as pickled bytes; a process unpacks each job once."""
     return compute(_unpacked(text), start, stop)
 
 

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.reader import nearest
 from symrot.sweeps.layout import TIME, Store, Table, Variable
 
 __all__ = ["STATISTICS", "Statistic", "order_statistics", "read_statistics", "statistics_of"]

@@ -13,9 +13,8 @@ from typing import Any, NoReturn
 
 from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
 from symrot.ensemble.variation import FIXED, PLACES, constant_places
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.reader import nearest
 from symrot.scene.scene import Scene
 
 __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]

@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 
 __all__ = [
     "DOCUMENTS", "LINE_KINDS", "Condition", "Document", "Erratum", "Line", "PrintedFormula", "conditions", "document",
@@ -95,7 +95,8 @@ def document(name: str) -> Document:
         If no document has this name.
     """
     if name not in DOCUMENTS:
-        raise InputError(f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}")
+        message = f"expected the name of a document, one of {', '.join(DOCUMENTS)}; got {name!r}"
+        raise InputError(with_hint(message, name, DOCUMENTS))
     path = Path(__file__).with_name(f"{name}.toml")
     content = tomllib.loads(path.read_text(encoding="utf-8"))
     claims = {claim["id"]: claim for claim in content["claim"]}

@@ -16,11 +16,10 @@ from symrot.certificates.rounding.intervals import DIGITS
 from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, scene_problem
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
-from symrot.scene.reader import nearest
 from symrot.workshop.input_ranges import input_box
 from symrot.workshop.kernel_text import KernelText, LibraryText, SceneText, kernel_text
 

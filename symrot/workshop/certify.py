@@ -12,10 +12,9 @@ import symrot
 from symrot.build import cache as build_cache
 from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
-from symrot.errors import CertificateError, InputError
+from symrot.errors import CertificateError, InputError, nearest
 from symrot.files.reading import read_input
 from symrot.scene.file import names_with_kernels
-from symrot.scene.reader import nearest
 from symrot.workshop import object_code
 from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import kernel_names

@@ -7,10 +7,9 @@ from sys import float_info
 from symrot.certificates.rounding.constants import parameter_range
 from symrot.certificates.rounding.library import RoundingProblem
 from symrot.certificates.rounding.scenes import SceneInputs
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula import exact_numbers
 from symrot.formula.tree import names
-from symrot.scene.reader import nearest
 
 __all__ = ["input_box"]
 

@@ -8,6 +8,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cache, cached_property
+from pathlib import Path
 from typing import Any, ClassVar
 
 from symrot.certificates.certificate import KernelUnderTest, certificate_text, with_sections
@@ -23,11 +24,12 @@ from symrot.codegen.printing.math_header import math_header
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.scene_kernels import rates_program, scene_description, with_values
 from symrot.dynamics.equations import Equations, equations_of_motion
-from symrot.errors import InputError
+from symrot.errors import InputError, nearest
 from symrot.formula.program import Program
 from symrot.kernels.library import definition, kernel_names
 from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import bind
+from symrot.scene.file import shipped_names
 from symrot.scene.scene import Scene, SceneSource, load_scene
 
 __all__ = ["SUFFIX", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
@@ -120,8 +122,9 @@ class LibraryText(KernelText):
 
     @cached_property
     def _c(self) -> tuple[str, str]:
-        """Return the C source and its header; operations are printed and bounded first, because the head states their
-        bounds.
+        """Return the C source and its header file.
+
+        The rounding errors of the operations are bounded first, because the opening comment states the bounds.
         """
         program = kernel_program(self.name)
         description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))
@@ -220,7 +223,16 @@ def kernel_text(kernel: KernelText | SceneSource) -> KernelText:
     """Return the texts of a kernel of the library, which is printed once per process, or of a scene."""
     if isinstance(kernel, KernelText):
         return kernel
-    return _library_text(kernel) if isinstance(kernel, str) and kernel in kernel_names() else scene_text(kernel)
+    if isinstance(kernel, str):
+        if kernel in kernel_names():
+            return _library_text(kernel)
+        hint = nearest(kernel, [*kernel_names(), *shipped_names()])
+        if kernel.isidentifier() and kernel not in shipped_names() and not Path(kernel).exists():
+            after = f" ({hint})" if hint else ""
+            raise InputError(
+                f"expected a kernel of `symrot emit --list`, a scene or a scene file, got {kernel[:60]!r}{after}"
+            )
+    return scene_text(kernel)
 
 
 @cache

@@ -212,7 +212,10 @@ def test_lower_case_letters_of_a_sequence_are_noted():
 
 def test_a_letter_that_is_no_usual_one_is_never_called_false():
     """With the diameter D, m D^2/8 is the moment of a cylinder; nothing says that D is the radius."""
-    assert symrot.check("I_zz = m D^2/8", body="solid cylinder").verdict == "definition"
+    verdict = symrot.check("I_zz = m D^2/8", body="solid cylinder")
+    assert verdict.verdict == "recognised"
+    assert "guessed, not stated: D is the diameter" in verdict.notes
+    assert symrot.check("I_zz = m D^2/7", body="solid cylinder").verdict == "definition"
 
 
 @pytest.mark.campaign

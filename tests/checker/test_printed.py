@@ -7,7 +7,8 @@ from tests.campaigns.checker.printed import formulas, judged, main, outcome
 
 @pytest.mark.parametrize("chapter", ["free_bodies", *(
     pytest.param(name, marks=pytest.mark.campaign)
-    for name in ("axis_angle", "energy", "euler_equations", "inertia", "quaternions", "rates", "rotation", "tops", "work")
+    for name in ("axis_angle", "energy", "euler_equations", "inertia", "quaternions", "rates", "rotation", "tops",
+                 "vectors", "work")
 )])  # fmt: skip
 def test_no_formula_of_a_chapter_gets_a_wrong_answer(chapter):
     outcomes = {entry["id"]: judged(entry)[0] for entry in formulas(chapter)}

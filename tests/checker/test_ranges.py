@@ -84,3 +84,10 @@ def test_a_condition_excludes_no_point_where_both_sides_are_equal(claim, conditi
 
 def test_a_condition_excludes_the_points_where_a_side_has_no_value():
     assert symrot.check("sqrt(x**2*y**2)/y == x", repair=False).conditions == ("x*y >= 0", "y != 0")
+
+
+def test_a_bound_of_an_exponential_is_a_bound_of_its_exponent():
+    verdict = symrot.check("acosh(cosh(x)) == x")
+    assert verdict.verdict == "conditional"
+    assert verdict.requires == ("x >= 0",)
+    assert verdict.conditions == ("x >= 0",)

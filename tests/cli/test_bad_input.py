@@ -48,7 +48,7 @@ def test_a_bad_scene_gets_one_sentence(tmp_path, content, words):
 @pytest.mark.parametrize(
     ("source", "words"),
     [
-        ("tumbling_prsim", ("tumbling_prsim", "did you mean 'tumbling_prism'?", "earth_wobble")),
+        ("tumbling_prsim", ("tumbling_prsim", "did you mean 'tumbling_prism'?", "`symrot scenes` lists all")),
         ("", ("expected the name of a scene",)),
         ("no/such/tumbling_prism.toml", ("no/such/tumbling_prism.toml", "there is none")),
         ("a\0b", ("expected the name of a scene",)),

@@ -19,7 +19,7 @@ def test_a_formula_is_right_in_every_form(answer):
 
 
 @pytest.mark.parametrize("answer, code", [
-    ("m*L^2/6", "factor"), ("-m*L^2/3", "overall_sign"), ("m*L/3", "factor"), ("3/(m*L^2)", "inverse"), ("L*m^2/3", "exchanged"),
+    ("m*L^2/6", "factor"), ("-m*L^2/3", "overall_sign"), ("m*L/3", "exponent"), ("3/(m*L^2)", "inverse"), ("L*m^2/3", "exchanged"),
     (r"\frac{m L^2}{6}", "factor"),
 ])  # fmt: skip
 def test_a_wrong_formula_gets_part_of_the_credit_and_its_error_is_named(answer, code):

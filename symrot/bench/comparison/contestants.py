@@ -18,7 +18,7 @@ from symrot.bench.comparison.peers import heyoka_integrator, scalar_kernel
 from symrot.bench.comparison.problem import Floats, Problem, State
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 
@@ -199,7 +199,8 @@ def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
     names = [name.strip() for name in methods.split(",")] if methods is not None else list(GROUPS)
     for name in names:
         if name not in GROUPS:
-            raise InputError(f"--methods: expected a comma-separated list of {', '.join(GROUPS)}, got {name!r}")
+            message = f"--methods: expected a comma-separated list of {', '.join(GROUPS)}, got {name!r}"
+            raise InputError(with_hint(message, name, GROUPS))
     return [one for one in CONTESTANTS if one.group in names and (one.quick or not quick)]
 
 

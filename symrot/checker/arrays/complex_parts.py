@@ -24,6 +24,8 @@ OF_COMPLEX = ("real_part", "imaginary_part", "conjugate", "abs")
 """Functions that a formula applies to complex numbers: the parts, the conjugate and the absolute value."""
 
 CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
+OF_MATRICES = ("skew", "transpose", "inverse", "trace", "det", "eye", "cross", "qmul")
+"""Functions of formulas in which I is the unit matrix."""
 MOST_FACTORS = 16
 """The highest power of a complex number that is multiplied out."""
 
@@ -38,7 +40,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     its conjugate, or if they have circular and hyperbolic functions and it is inside one of these.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
-    for letter in LETTERS:
+    has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
+    for letter in LETTERS[: 2 if has_matrices else None]:  # cos(x)*I + (1 - cos(x))*n*n.T has the unit matrix
         for node in nodes:
             inside = _exponent(node)
             if inside is not None and (own := _letter_in(inside, letter)):

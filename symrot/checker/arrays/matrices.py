@@ -13,8 +13,8 @@ from symrot.checker.claim.tree import Node, number, walk
 from symrot.checker.claim.vectors import is_tensor
 
 __all__ = [
-    "as_rotations", "bold_matrices", "matrices_of_entries", "matrix_of_entries", "used_columns", "used_matrices",
-    "with_lengths",
+    "as_rotations", "bold_matrices", "matrices_of_entries", "matrix_of_entries", "rate_matrices", "used_columns",
+    "used_matrices", "with_lengths", "without_time",
 ]  # fmt: skip
 
 OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
@@ -84,6 +84,35 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
                 rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
                 matrices[name] = name in rates
     return matrices
+
+
+def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
+    """Return the matrices R of ``R' = skew(w) R`` and ``R_dot = R skew(w)``, and whether each depends on time."""
+    matrices: dict[str, bool] = {}
+    for side, other in (relation[1:], relation[:0:-1]):
+        is_rate = side.kind == "call" and side.value == "diff" and len(side.args) == 2
+        name = str(side.args[0].value) if is_rate else str(side.value).removesuffix("_dot")
+        if not name[:1].isupper() or (not is_rate and name == side.value):
+            continue
+        for _, node in walk(other):
+            for pair in pairwise(node.args if node.kind == "product" else ()):
+                kinds = {factor.value for factor in pair if factor.kind == "call"}
+                if name in [_bare(factor).value for factor in pair] and "skew" in kinds:
+                    matrices[name] = is_rate
+    return matrices
+
+
+def without_time(node: Node, names: Collection[str]) -> Node:
+    """Return a tree with the name R in place of each R(t) among some names, whose definitions depend on time."""
+    if node.kind == "call" and node.value in names and node.args == (TIME,):
+        return Node("name", node.value, (), node.span)
+    return replace(node, args=tuple(without_time(child, names) for child in node.args))
+
+
+def _bare(node: Node) -> Node:
+    """Return the node of the name R for R(t) and its transpose, and any other node unchanged."""
+    node = node.args[0] if node.kind == "transpose" else node
+    return Node("name", node.value) if node.kind == "call" and node.args == (TIME,) else node
 
 
 def _name_of_array(node: Node) -> str:

@@ -4,9 +4,11 @@ A quaternion q has the scalar part q_0 and the vector part q_1, q_2, q_3, or a v
 are Hamilton's. A vector in a product is the quaternion with the scalar part zero.
 """
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.shapes import Shape, shape_of
 from symrot.checker.claim.tree import Node, number, product, walk
 
@@ -14,8 +16,17 @@ __all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
 
 TIME = Node("name", "t")
 CONJUGATE, PRODUCT = "conjugate", "qmul"
+LETTERS = ("q", "p", "Q", "P")
+"""First letters of names that are usually quaternions."""
+
 UNITS = {"i": 1, "j": 2, "k": 3}
 """Name of a unit -> its place among the components."""
+
+ANGULAR = re.compile(r"(omega|Omega|w)(_[A-Za-z]+)?")
+"""Names of angular velocities."""
+
+RATES = ("q", "Q", "beta", "epsilon")
+"""Names of quaternions in a product with an angular velocity alone, which has no mark."""
 
 ENDINGS = ("_vec", "_v", "v")
 """Endings of a name for the vector part of a quaternion."""
@@ -52,6 +63,13 @@ def used_quaternions(
     sign, *sides = relation
     if _has_units(sides, (*vectors, *known)):
         return _of_units(relation)
+    bold = {
+        node.args[0].value
+        for side in sides
+        for _, node in walk(side)
+        if node.kind == "call" and node.value == CONJUGATE and node.args[0].kind == "name"
+    }
+    vectors = [name for name in vectors if name not in bold]  # a bold letter with a conjugate is a quaternion
     names = _quaternion_names(sides, vectors, shapes, known)
     if not names and not any(node.value == CONJUGATE for side in sides for _, node in walk(side)):
         return Quaternions(relation)
@@ -60,7 +78,10 @@ def used_quaternions(
     if any(shape_of(side, reader.shapes(shapes)) == (4, 1) for side in sides):
         reader.pure |= {str(part.value): None for side in sides for part in _vector_of_pair(side)}
     left, right = _of_one_shape(sides, reader.shapes(shapes))
+    (sign, left, right), on_matrix = as_matrix_of_map((sign, left, right), {*vectors, *reader.pure}, known)
     used = {str(node.value) for side in (left, right) for _, node in walk(side) if node.kind == "name"}
+    if on_matrix:
+        reader.pure = {name: None for name in reader.pure if name in used}
     moving = any(node.kind == "call" and node.value == "diff" for side in sides for _, node in walk(side))
     definitions = [part for name in names for part in _definitions(name, used, moving)]
     lefts, rights = (
@@ -69,6 +90,7 @@ def used_quaternions(
     first = names[0] if names else ""
     parts = dict(definitions).get(first)
     notes = [f"{first} is a quaternion with the scalar part {first}_0 and Hamilton's product"] if parts else []
+    notes += [on_matrix] if on_matrix else []
     return Quaternions((sign, lefts, rights), tuple(definitions), tuple(reader.pure), tuple(notes))
 
 
@@ -137,6 +159,8 @@ def _quaternion_names(
                 add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
+    for factor in _turned(sides):
+        add(factor)
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
         if node.kind == "call" and node.value == "sqrt" and node.args[0].kind == "call" and node.args[0].value == "dot":
@@ -144,12 +168,58 @@ def _quaternion_names(
             if f"{inner.value}_bar" in used:
                 add(inner)
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
+        if (rotating := _rotating(side, other)) is not None:
+            add(rotating)
         two = side.kind == "product" and len(side.args) == 2 and all(factor.kind == "name" for factor in side.args)
         components = two and all({f"{factor.value}_0", f"{factor.value}0"} & used for factor in side.args)
         if components and _is_list(other):
             for factor in side.args:
                 add(factor)
     return tuple(names)
+
+
+def _turned(sides: Sequence[Node]) -> Sequence[Node]:
+    """Return the quaternions that only their places show: q in ``v' = q v q`` and in ``q' = 1/2 omega q``."""
+    for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
+        factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
+        if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
+            continue
+        names = [str(factor.value) for factor in factors]
+        rate = _bare(side.args[0]) if side.kind == "call" and side.value == "diff" else side
+        moved = {str(rate.value), str(rate.value).removesuffix("_prime")} if rate.kind == "name" else set()
+        is_sandwich = len(names) == 3 and names[0] == names[2] != names[1] and names[1] in moved
+        if is_sandwich and names[0].islower():
+            return factors[:1]
+        own = [factor for factor in factors if not ANGULAR.fullmatch(str(factor.value))]
+        is_rate = side.kind == "call" and len(factors) == 2 and len(own) == 1 and own[0] == rate
+        if is_rate and str(own[0].value) in RATES:
+            return own
+    return ()
+
+
+def _rotating(side: Node, other: Node) -> Node | None:
+    """Return q of ``q v q^-1`` or ``q v q_bar``, or of these reversed, if they rotate a vector; otherwise None.
+
+    The other side shows that: it is ``R v`` or another name with the same letter, such as ``v'``. Letters that are
+    numbers commute, and nobody writes such a product with them unless both sides are equal.
+    """
+    if side.kind != "product" or len(side.args) != 3:
+        return None
+    for first, vector, last in (side.args, side.args[::-1]):
+        is_inverse = last.value == f"{first.value}_bar" or (_is_inverse(last) and last.args[0] == first)
+        if first.kind != "name" or str(first.value)[0] not in LETTERS or vector.kind != "name" or not is_inverse:
+            continue
+        rotated = other.kind == "name" and other != vector and str(other.value)[0] == str(vector.value)[0]
+        factors = other.args if other.kind == "product" else ()
+        matrix = factors[0].args[0] if len(factors) == 2 and factors[0].kind == "transpose" else (*factors, other)[0]
+        mapped = len(factors) == 2 and factors[1] == vector and str(matrix.value)[:1].isupper()
+        if rotated or mapped:
+            return first
+    return None
+
+
+def _is_inverse(node: Node) -> bool:
+    return node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),)))
 
 
 def _vector_of_pair(node: Node) -> Sequence[Node]:
@@ -188,7 +258,7 @@ class _Products:
             name = str(node.value).removesuffix("_bar")
             own = Node("name", name, (), node.span)
             return own if name == node.value else Node("call", CONJUGATE, (own,), node.span)
-        if node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),))):
+        if _is_inverse(node):
             base = self.read(node.args[0])
             if self.is_quaternion(base):
                 norm = Node("call", "dot", (base, base))
@@ -204,8 +274,12 @@ class _Products:
 
     def multiplied(self, node: Node) -> Node:
         """Return a product in which quaternions and the vectors between them are multiplied by Hamilton's rule."""
-        places = [n for n, factor in enumerate(node.args) if self.is_quaternion(factor)]
-        if len(places) < 2:
+        norms = [part for factor in node.args if factor.kind == "product" for part in factor.args if part.kind == "inv"]
+        if norms:  # of an inverse, the conjugate over the square of the norm
+            parts = [part for factor in node.args for part in (factor.args if factor.kind == "product" else (factor,))]
+            node = replace(node, args=(*norms, *(part for part in parts if part not in norms)))
+        places = [n for n, factor in enumerate(node.args) if self.is_quaternion(factor) or _is_angular(factor)]
+        if len(places) < 2 or not any(map(self.is_quaternion, node.args)):
             return node
         between = node.args[places[0] : places[-1] + 1]
         for factor in between:
@@ -216,6 +290,10 @@ class _Products:
             value = Node("call", PRODUCT, (value, factor), node.span)
         rest = [*node.args[: places[0]], *node.args[places[-1] + 1 :]]
         return product([*rest, value], node.span) if rest else value
+
+
+def _is_angular(node: Node) -> bool:
+    return node.kind == "name" and ANGULAR.fullmatch(str(node.value)) is not None
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:

@@ -14,7 +14,18 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with_parts
-from symrot.checker.arrays.matrices import bold_matrices, matrix_of_entries, used_columns, used_matrices, with_lengths
+from symrot.checker.arrays.index_notation import written_out
+from symrot.checker.arrays.matrices import (
+    bold_matrices,
+    matrices_of_entries,
+    matrix_of_entries,
+    rate_matrices,
+    used_columns,
+    used_matrices,
+    with_lengths,
+    without_time,
+)
+from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.interpreter import CONSTANTS, Interpreter, time
@@ -26,7 +37,14 @@ from symrot.checker.claim.quantities import (
 )
 from symrot.checker.claim.reader import Declared, Relation, read_expression, read_relation, readings_of, with_time
 from symrot.checker.claim.scope import Divisor, is_matrix
-from symrot.checker.claim.shapes import Shape, added_names, shape_of, with_unit_matrices
+from symrot.checker.claim.shapes import (
+    Shape,
+    added_names,
+    multiplied_names,
+    operand_names,
+    shape_of,
+    with_unit_matrices,
+)
 from symrot.checker.claim.tree import Node, negated, text, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
@@ -55,6 +73,8 @@ __all__ = [
 
 
 SIDES = ("left", "right")
+
+ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
 
 
 @dataclass(frozen=True)
@@ -112,7 +132,8 @@ class Claim:
         The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
         the claim is measured against.
     has_parts : bool
-        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers.
+        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers, or
+        one of components, made from the text's equation in index notation.
     context : Context
         What is said in words about the names of the claim, and about the body.
     """
@@ -348,23 +369,33 @@ def claim_of_relation(
     if relation[0] != "==":
         instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    relation, on_indices = written_out(relation)
+    notes = [*notes, *([on_indices] if on_indices else [])]
     names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
     words = {name for name in names if len(name) > 1 and name.isalpha()}
     matrices = {source: _matrix_given(source, words) for source in assume}
     assume = [source for source in assume if matrices[source] is None]
     define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
     hypotheses = _of_one_time([_hypothesis(source, "given", words=words) for source in assume])
-    unit = imaginary_unit([*relation[1:], *context])
+    relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
+    define = [*pauli, *define]
+    notes = [*notes, *([ON_PAULI] if pauli else [])]
+    unit = None if pauli else imaginary_unit([*relation[1:], *context])
     if unit is not None and not is_complex(relation[1:], str(unit.value)):
         unit = None
     if unit is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
-    bold = bold_matrices(relation[1:], {vector.name for vector in vectors})
+    moving_matrices = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
+    sign, left, right = relation
+    relation = sign, without_time(left, moving_matrices), without_time(right, moving_matrices)
+    bold = bold_matrices(relation[1:], {vector.name for vector in vectors}) | moving_matrices
     vectors = [vector for vector in vectors if vector.name not in bold]
     define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
-    notes = [*notes, *map(_on_matrix, bold)]
     arrays = _with_arrays(relation, vectors, define)
+    solved = {side.value for side in arrays.relation[1:]} - {side.value for side in relation[1:]}
+    define = [(name, tree) for name, tree in define if name not in bold or name not in solved]
+    notes = [*notes, *(_on_matrix(name) for name in bold if name not in solved)]
     relation, define, notes = arrays.relation, [*arrays.definitions, *define], [*notes, *arrays.notes]
     vectors = [*vectors, *map(Vector, arrays.vectors)]
     vectors = [vector for vector in vectors if vector.name not in dict(define)]
@@ -406,7 +437,7 @@ def claim_of_relation(
         implied=True,
         sources=sources,
         units=check_units(dict(units or {}), used, "claim"),
-        has_parts=unit is not None,
+        has_parts=unit is not None or bool(on_indices),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
@@ -446,10 +477,13 @@ def _with_vectors(
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
     shapes = _shapes(vectors, define)
+    operands = {name: shape for name, shape in operand_names(relation, shapes).items() if name not in named}
+    vectors = [*vectors, *map(Vector, operands)]
+    shapes |= operands
     with_units = with_unit_matrices(relation, shapes)
     while new := {
         name: shape
-        for name, shape in added_names(with_units, shapes).items()
+        for name, shape in (*added_names(with_units, shapes).items(), *multiplied_names(with_units, shapes).items())
         if shape == (3, 1) or (shape == (3, 3) and is_tensor(name))
     }:
         vectors = [*vectors, *map(Vector, new)]
@@ -469,14 +503,15 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
     """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
-    arrays = used_quaternions(relation, names, _shapes(vectors, define), known)
+    generic = {*matrices_of_entries(define)}
+    arrays = used_quaternions(relation, names, _shapes(vectors, define), known - generic)
     known |= names | {name for name, _ in arrays.definitions}
     matrices = used_matrices(arrays.relation[1:], known)
     columns = [name for name in used_columns(arrays.relation[1:], known) if name not in matrices]
     return replace(
         arrays,
         definitions=(*arrays.definitions, *((name, matrix_of_entries(name)) for name in matrices)),
-        relation=_with_scalar_products(arrays.relation, columns),
+        relation=_with_scalar_products(arrays.relation, [*columns, *names]),
         vectors=(*arrays.vectors, *columns),
         notes=(
             *arrays.notes,

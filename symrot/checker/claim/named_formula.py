@@ -16,7 +16,7 @@ from symrot.errors import InputError
 from symrot.exact import normal_form
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["NamedFormula", "named_formula", "open_formula", "related_formula"]
+__all__ = ["NamedFormula", "Solve", "named_formula", "open_formula", "related_formula"]
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")

@@ -6,11 +6,12 @@ inertia. The shapes tell which: a scalar can neither be added to a matrix nor be
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, number, walk
 
-__all__ = ["Shape", "added_names", "shape_of", "with_unit_matrices"]
+__all__ = ["Shape", "added_names", "multiplied_names", "operand_names", "shape_of", "with_unit_matrices"]
 
 Shape = tuple[int, int] | None
 """Rows and columns of a matrix; None for a scalar."""
@@ -102,6 +103,27 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
                 if len(factors) == 1 and factors[0].kind == "name" and shape_of(factors[0], shapes) is None:
                     added[str(factors[0].value)] = own
     return added
+
+
+def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
+    """Return the names of unknown shape in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)``: they are vectors."""
+    calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
+    names = [argument for call in calls if call.kind == "call" for argument in call.args
+             if argument.kind == "name" and len(call.args) < 3]  # fmt: skip
+    return {str(name.value): (3, 1) for name in names if shapes.get(str(name.value)) is None}
+
+
+def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
+    """Return the names of unknown shape that must be columns: w in ``q' = (1 + [q] + q q^T) w`` for a vector q."""
+    columns: dict[str, Shape] = {}
+    for side, other in (relation[1:], relation[:0:-1]):
+        name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""
+        if (shapes.get(name) if name else shape_of(side, shapes)) != (3, 1) or other.kind != "product":
+            continue
+        for first, second in pairwise(other.args):
+            if shape_of(first, shapes) == (3, 3) and second.kind == "name" and shapes.get(str(second.value)) is None:
+                columns[str(second.value)] = (3, 1)
+    return columns
 
 
 def _is_square(shape: Shape) -> bool:

@@ -6,6 +6,7 @@ The place of an axis is the point through which it passes; the titles of places 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from symrot.checker.context.angle_orders import AXIS_OF_ANGLE, has_order, place_by_words
 from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import LINES, PLACES, RIM, SURFACE, plain_words
@@ -17,7 +18,6 @@ __all__ = [
     "admits_letters",
     "admits_name",
     "guesses",
-    "has_order",
     "is_at_open_place",
     "is_component",
     "is_place",
@@ -42,6 +42,7 @@ COMPONENTS = {
 """A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
 
 INDICES = frozenset("xyz0123")
+ANGLES = ("phi", "theta", "psi")
 
 
 def frame_of(name: str) -> str:
@@ -75,6 +76,8 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     frame, sequence, place = frame_of(name), sequence_of(name), place_of(name)
     if meaning is None and "component of the angle rates" in name and has_order(sequence):
         yield from () if name.startswith(PLACE_OF_RATE.get(quantity, "")) else ("for another angle",)
+    if context.sign_of_products == "minus" and name.endswith("without the minus sign"):
+        yield "without the minus sign of products of inertia"
     expected = context.frame or (meaning.frame if meaning else "")
     if expected and frame and frame != expected:
         yield f"for the {frame} frame"
@@ -157,11 +160,13 @@ def is_at_open_place(context: Context, name: str) -> bool:
 OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
-def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
+def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
     """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
 
-    ``mapping`` gives the renamed symbols; any other letter of the claim is the symbol of the same name.
+    ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed symbols;
+    any other letter of the claim is the symbol of the same name.
     """
+    sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
     parts = {re.sub(r"_?[xyz1-3]$", "", new) for new in renamed}
@@ -170,8 +175,11 @@ def admits_letters(context: Context, mapping: Mapping[str, str], letters: Iterab
         meaning = context.meaning_of(letter)
         if meaning is None and {symbol[:1], letter[:1]} == {"d"} and (of_angle := context.meaning_of(letter[1:])):
             meaning, symbol = of_angle, symbol[1:]
-        if meaning is not None and context.sequence == "xyz" and meaning.quantity.title in ("yaw", "roll"):
-            symbol = {"phi": "psi", "psi": "phi"}.get(symbol, symbol)
+        title = meaning.quantity.title if meaning is not None else ""
+        if sequence and title in AXIS_OF_ANGLE and symbol.removeprefix("d") in ANGLES:
+            if ANGLES.index(symbol.removeprefix("d")) != place_by_words(title, sequence):
+                return False  # yaw is the angle about z, wherever it stands in the sequence
+            continue
         if meaning is None and has_order(context.sequence) and {symbol, letter} in EXCHANGED:
             return False
         if meaning is not None and not _is_symbol_of(meaning, symbol):
@@ -192,11 +200,6 @@ EXCHANGED = ({"phi", "psi"}, {"dphi", "dpsi"})
 """Letters of the first and the third angle, and of their rates."""
 
 PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
-
-
-def has_order(sequence: str) -> bool:
-    """Return whether every reader takes phi as the first angle of a sequence and psi as the third: ZXZ, not ZYX."""
-    return bool(sequence) and sequence[0] == sequence[-1]
 
 
 def same_rotation(sequence: str) -> str:

@@ -185,6 +185,12 @@ _NOUNS = {
 }  # fmt: skip
 """Name of a dimension of a shape -> the nouns for it, as in "of height h"; a diameter has "diameter" for "radius"."""
 
+_SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
+    "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
+    "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
+}  # fmt: skip
+"""Shape -> the nouns for a list of its dimensions, each with the dimension in units of its letter."""
+
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
     r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]|in plane (of )?x,?( and)? y"
@@ -267,9 +273,11 @@ def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[st
     for dimension in dimensions:
         nouns = [(noun, Fraction(1)) for noun in _NOUNS.get(dimension.name, ())]
         nouns += [(noun.replace("radius", "diameter"), Fraction(1, 2)) for noun, _ in nouns if "radius" in noun]
+        nouns = [(f"(?:half|semi)[- ]?{noun}", 2 * unit) for noun, unit in nouns] + nouns
         for noun, unit in nouns:
             pattern = (
-                rf"(?<!base )(?<!inner )(?<!outer )(?<!tube )\b(?:of |with |and )?(?:a )?{noun} ({_TERM})(?![\w'/])"
+                r"(?<!half[- ])(?<!semi[- ])(?<!base )(?<!inner )(?<!outer )(?<!tube )"
+                rf"\b(?:of |with |and )?(?:a )?{noun} ({_TERM})(?![\w'/])"
             )
             if (match := re.search(pattern, words)) and dimension.symbol not in letters:
                 letter, factor = _scaled(match[1])
@@ -277,14 +285,16 @@ def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[st
                     continue
                 letters[dimension.symbol], factors[dimension.symbol] = letter, factor * unit
                 rest = re.sub(pattern, " ", rest, count=1, flags=re.IGNORECASE)
-    sides = rf"\b(?:of |with )?(?:sides?|edges?|semi-?axes)(?: lengths?)? ((?:{_TERM}(?![\w'/])(?:,? and |, ?)?)+)"
-    if match := re.search(sides, words):
+    for side, unit in _SIDES["ellipsoid" if kind.shape == "ellipsoid" else "other"]:
+        sides = rf"\b(?:of |with )?(?<!half[- ])(?:{side})(?: lengths?)? ((?:{_TERM}(?![\w'/])(?:,? and |, ?)?)+)"
+        if not (match := re.search(sides, words)):
+            continue
         terms = [_scaled(term) for term in re.findall(_TERM, re.sub(r",? and |, ?", ";", match[1]))]
         if kind.title == "cube":
             terms *= 3
         for dimension, (letter, factor) in zip(dimensions, terms, strict=False):
-            letters[dimension.symbol], factors[dimension.symbol] = letter, factor
-        rest = rest.replace(match[0].lower().strip(), " ", 1)
+            letters[dimension.symbol], factors[dimension.symbol] = letter, factor * unit
+        rest = rest.replace(plain_words(match[0]), " ", 1)
         rest = re.sub(r"(along|in) x, y,? (and )?z|along x( and|,)? .? ?along y", " ", rest)
     if match := re.search(r"\bwith (?:the )?moments ([\w']+), ?([\w']+),?(?: and)? ?([\w']+)", words):
         first, second, third = match.groups()

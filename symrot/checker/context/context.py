@@ -127,6 +127,11 @@ class Context:
         return self.body.place if self.body else ""
 
     @property
+    def sign_of_products(self) -> str:
+        """ "minus" or "plus" if the words say whether products of inertia have the minus sign, otherwise empty."""
+        return next((meaning.quantity.sign for meaning in self.meanings if meaning.quantity.sign), "")
+
+    @property
     def rest(self) -> tuple[str, ...]:
         """The words of the context that symrot does not use."""
         own = [meaning.rest for meaning in self.meanings] + ([self.body.rest] if self.body else [])
@@ -287,7 +292,7 @@ def _original(rest: str, words: str) -> str:
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a text can mean: ``x'`` is the rate of x if it ``is_rate``, otherwise a name by itself."""
+    """Yield the names that a text can stand for; ``x'`` is the rate of x if ``is_rate``, otherwise a name."""
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare
@@ -450,6 +455,11 @@ def _check_consistency(context: Context, prefix: str) -> None:
                     f"{prefix}where: expected one meaning of {meaning.written[0]}, "
                     f"got {other.quantity.title!r} and {meaning.quantity.title!r}"
                 )
+        if meaning.quantity.sign not in ("", context.sign_of_products):
+            raise InputError(
+                f"{prefix}where: expected products of inertia with one sign, got {meaning.written[0]} as the "
+                f"{meaning.quantity.title} besides others with the {context.sign_of_products} sign"
+            )
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:
             raise InputError(

@@ -9,10 +9,10 @@ these words.
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import islice, zip_longest
 from typing import Any
 
-from sympy import Expr, Function, Rational, Symbol
+from sympy import Dummy, Expr, Function, Rational, Symbol, sqrt
 
 from symrot import symbols
 from symrot.checker.claim.atoms import atoms_of
@@ -28,7 +28,6 @@ from symrot.checker.context.admission import (
     admits_letters,
     admits_name,
     guesses,
-    has_order,
     is_at_open_place,
     is_component,
     is_place,
@@ -36,15 +35,16 @@ from symrot.checker.context.admission import (
     plain,
     same_rotation,
 )
+from symrot.checker.context.angle_orders import has_order
 from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, letters_of
 from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
-from symrot.checker.recognition.naming import verdict_on_name, words_of
+from symrot.checker.recognition.naming import SQUARED, verdict_on_name, words_of
 from symrot.checker.recognition.renaming import component, is_consistent
-from symrot.checker.repair.diagnose import diagnose
+from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
@@ -105,7 +105,7 @@ class Meant:
     @property
     def identification(self) -> Identification:
         """The derived formula as an entry of ``recognised_as`` in a verdict."""
-        return Identification(self.known.name, "", self.mapping, self.known.source)
+        return Identification(self.known.name.removesuffix(SQUARED), "", self.mapping, self.known.source)
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
@@ -244,6 +244,9 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
             return verdict  # symrot derives a few formulas only for such a body
         sentence = f"this is the formula {' and '.join(reasons)}: the {known.name}"
         word = "doubtful" if verdict.verdict == "definition" else verdict.verdict
+        if verdict.repairs and verdict.diagnosis.code not in ("none", "derived"):
+            whole = replace(verdict.diagnosis, text=f"{verdict.diagnosis.text}; {sentence}")
+            return replace(verdict, verdict=word, diagnosis=whole, reason="")
         return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")
     return verdict
 
@@ -369,19 +372,25 @@ def _different(
     diagnosis, repairs = verdict.diagnosis, verdict.repairs
     is_solved = named.solve is None or named.solve(named.formula) == named.formula
     if not repairs and is_solved:
-        for candidate, decision in decisions[:MOST_DIAGNOSED]:
-            diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
-            if repairs:
-                break
+        diagnoses = [(*_diagnosed(claim, named, *pair), *pair) for pair in decisions[:MOST_DIAGNOSED]]
+        repaired = sorted((known for known in diagnoses if known[1]), key=lambda known: known[1][0].cost)
+        if repaired:
+            diagnosis, repairs, candidate, decision = repaired[0]
+            repairs = _different_repairs([known[1] for known in repaired])
         else:
-            (candidate, decision), *_ = decisions
-            diagnosis = Diagnosis("derived", f"it is not the {candidate.known.name}")
+            diagnosis = Diagnosis("derived", f"it is not the {candidate.identification.name}")
             if len({as_text(other.value) for other, _ in decisions}) == 1:
                 repairs = (Repair(f"{text(named.side)} == {as_text(candidate.value)}", "derived", MOST_COSTLY),)
     return Verdict(
         "false", counterexample=decision.counterexample, diagnosis=diagnosis, repairs=repairs,
         recognised_as=(candidate.identification,),
     )  # fmt: skip
+
+
+def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
+    """Return the first repair towards each of several formulas, then the second ones, in all at most three."""
+    in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
+    return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
@@ -435,14 +444,14 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
     shape = value.shape if is_matrix(value) else None
     own = atoms_of(list(value) if shape else [value]) - {time}
     for known in _all_known():
-        if known.is_step or known.is_relation or ", squared" in known.name or not admits_name(
-            context, known.name, quantity
-        ):  # fmt: skip
+        if known.is_step or known.is_relation or not admits_name(context, known.name, quantity):
             continue
         open_words = guesses(context, known.name, stated)
-        if not any(word in known.name for word in stated.split()) or not all(map(is_place, open_words)):
+        is_stated = context.meaning_of(quantity) is not None or any(word in known.name for word in stated.split())
+        if not is_stated or not all(map(is_place, open_words)):
             continue
         target = known_value(known.text)
+        target = _root(target) if known.name.endswith(SQUARED) else target
         if getattr(target, "shape", None) != shape or not is_component(known.name, quantity):
             continue
         target = _with_letters(context, target)
@@ -453,6 +462,12 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
             names = {old.name: as_text(new) for old, new in mapping.items() if old in used}
             names = {old: new for old, new in names.items() if plain(new) != old}
             yield Meant(known, renamed, names, bool(open_words))
+
+
+def _root(square: Expr) -> Expr:
+    """Return the root of a square whose symbols are positive, such as masses and lengths."""
+    positive = {symbol: Dummy(positive=True) for symbol in square.free_symbols}
+    return sqrt(square.xreplace(positive)).xreplace({new: old for old, new in positive.items()})
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
@@ -517,7 +532,7 @@ def _assignments(
             continue
         letters = [as_text(atom) for atom in atoms]
         unpinned = {old: new for old, new in free if old != new}
-        if admits_letters(replace(context, body=None), unpinned, letters):
+        if admits_letters(replace(context, body=None), known.name, unpinned, letters):
             yield dict(zip(chosen, atoms, strict=True))
 
 

@@ -29,8 +29,8 @@ class Quantity:
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
-    with_plus : bool
-        Whether it is a product of inertia that is defined without the minus sign.
+    sign : str
+        "minus" or "plus" for a product of inertia that is stated to be defined with or without the minus sign.
     """
 
     title: str
@@ -38,7 +38,7 @@ class Quantity:
     formulas: tuple[str, ...]
     symbols: str
     unit: str
-    with_plus: bool = False
+    sign: str = ""
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
@@ -61,8 +61,13 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("principal moment of inertia", ("principal moment",), INERTIA, MOMENTS, MOMENT),
     Quantity("product of inertia", (), ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT),
     Quantity("product of inertia without the minus sign",
-             ("product of inertia with a plus sign", "integral of x y dm", "integral of x z dm", "integral of y z dm"),
-             ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, with_plus=True),
+             ("product of inertia with a plus sign", "integral of x y dm", "integral of x z dm", "integral of y z dm",
+              "positive product of inertia"),
+             ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, sign="plus"),
+    Quantity("product of inertia with the minus sign",
+             ("product of inertia with a minus sign", "minus integral of x y dm", "minus integral of x z dm",
+              "minus integral of y z dm", "negative product of inertia"),
+             ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, sign="minus"),
     Quantity("inertia tensor", ("inertia matrix", "tensor of inertia", "matrix of inertia"),
              ("inertia tensor", "parallel-axis"), MOMENTS, MOMENT),
     Quantity("radius of gyration", (), ("radius of gyration",), "k_O|k_G|i|k", "m"),
@@ -244,6 +249,8 @@ def plain_words(text: str) -> str:
     for pattern, spelling in _SPELLINGS:
         words = re.sub(pattern, spelling, words)
     words = re.sub(r"integral of\s+(integral of\s+)+", "integral of ", words)
+    words = re.sub(r"[-−]\s*(?=integral)", "minus ", words)
+    words = re.sub(r"product of inertia\W*(?:as |defined as |given by )?(?=(?:minus )?integral of)", "", words)
     return " ".join(words.split())
 
 

@@ -224,7 +224,7 @@ class _ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether there is neither a counterexample nor a condition that needs no hypotheses."""
+        """Whether nothing decides the claim: no counterexample, and no condition that suffices without hypotheses."""
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy
-from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, cos, sin
+from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, cos, cosh, exp, sin
 from sympy.core.relational import Relational
 from sympy.polys.polyerrors import PolynomialError
 
@@ -466,6 +466,11 @@ def _range_text(quantity: Expr, own: _Range) -> str:
         most = None if most == 1 and own.high_closed else most
     if surely_nonnegative(quantity) and least == 0 and own.low_closed:
         least = None
+    if isinstance(quantity, cosh) and least == 1 and own.low_closed:
+        least = None
+    if isinstance(quantity, exp) and {least, most} <= {None, 1}:  # exp(x) >= 1 where x >= 0
+        quantity = quantity.args[0]
+        least, most = (None if bound is None else bound - 1 for bound in (least, most))
     below, above = "<=" if own.low_closed else "<", "<=" if own.high_closed else "<"
     text = as_text(quantity)
     if least is not None and most is not None:

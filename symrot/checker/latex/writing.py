@@ -51,8 +51,10 @@ class LatexNotation:
         return text(node) if written is None else written.removesuffix(" = 0")
 
     def relation(self, relation: Relation) -> str:
-        """Return the LaTeX of an equation."""
+        """Return the LaTeX of an equation or inequality."""
         sign, left, right = relation
+        if sign != "==":
+            return f"{self.formula(left)} {SIGNS.get(sign, sign)} {self.formula(right)}"
         return latex_of(relation, self.functions, self.vectors) or f"{text(left)} {sign} {text(right)}"
 
     def rewritten(self, source: str) -> str:

@@ -32,8 +32,22 @@ def bodies() -> Iterator[Named]:
                 mass = symbols.rho * body.measure
                 dense = factor(moment.subs(symbols.m, mass))
                 yield f"moment of inertia of a {title} of given density, {axis} axis", SOLIDS, dense
+    yield from _right_triangle()
     yield from _rods_and_masses()
     yield from _theorems()
+
+
+def _right_triangle() -> Iterator[Named]:
+    """Yield the moments of a right triangular plate about its centre of mass and about its right-angled corner."""
+    plate = solid("triangular_plate", apex=0)
+    for place, point in (
+        ("its centre of mass", tuple(plate.center_of_mass)),
+        ("the corner of its right angle", (0, 0, 0)),
+    ):
+        moments = plate.inertia_about(point)
+        for n, axis in enumerate("xyz"):
+            name = f"moment of inertia of a right triangular plate about {place}, {axis} axis"
+            yield name, SOLIDS, factor(moments[n, n])
 
 
 def _rods_and_masses() -> Iterator[Named]:

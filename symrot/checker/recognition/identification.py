@@ -62,9 +62,9 @@ LAST_FIRST = (3, 0, 1, 2)
 LETTERS = {
     "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
-    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?",
+    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
-    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
+    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
     "s": r"[tTP]\w*|tau|Delta_t", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
     "1": r"([nkeulqpsgcabdr]|beta|eps|epsilon|varepsilon|eta|xi|rho|sigma|gamma|lambda|mu|[RACQ]_?[0-9])\w*",
 }  # fmt: skip
@@ -118,7 +118,7 @@ def identify(
     fitting = (
         known
         for known in identified(_value(formula))
-        if admits_name(stated, known.name, "") and admits_letters(stated, known.mapping, ())
+        if admits_name(stated, known.name, "") and admits_letters(stated, known.name, known.mapping, ())
     )
     return list(islice(fitting, most))
 

@@ -175,7 +175,7 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
-    """Yield the components of a vector that have so few symbols that only a name makes them recognisable."""
+    """Yield the components of a vector whose formulas are short: only their names tell what they are."""
     for word, component in zip(WORDS, column, strict=True):
         yield f"{word} component of the {name}", source, component
 

@@ -17,22 +17,25 @@ from sympy import Function, Matrix, Mul, Rational, Symbol, acos, asin, atan2
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, sum_of, text, walk
 from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.context import Context, letters_of
-from symrot.checker.recognition.identification import identified, unit_of
+from symrot.checker.recognition.identification import identified, plain_name, unit_of
 from symrot.checker.recognition.known_formulas import ending_of
+from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import primitive, terms_expanded
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
+from symrot.checker.recognition.solved_relations import put_back, solved_claims
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, neighbours, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact.decide import decide
 
-__all__ = ["verdict_on_name", "verdict_on_relation", "words_of"]
+__all__ = ["SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation", "words_of"]
 
 TIME = Node("name", "t")
 
@@ -59,8 +62,14 @@ MANY_ENTRIES = 4
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
 """The faults that a wrong unit proves."""
 
+MOST_SOLVED = 4
+"""The most letters for which an equation is solved, to compare it with known relations."""
+
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+AS_NEAR = 0.15
+"""The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
@@ -82,7 +91,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"(d(phi|theta|psi|alpha|gamma)|(phi|theta|psi)_?dot)(_?[1-3])?", ("angle rates", "precession", "spin")),
     (r"dbeta(_?[0-4])?", ("angle rates", "quaternion rates")),
     (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]", ("quaternion", "Rodrigues parameters of")),
-    (r"d(omega|w)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
+    (r"d(omega|w|Omega)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
     (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
     (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
@@ -114,6 +123,9 @@ SQUARED = ", squared"
 CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
 """Names of moments and radii of gyration about the centre of mass, and about another point."""
 
+MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
+"""Angle of ZXZ -> the word for its momentum in the names of known formulas."""
+
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
 """Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
 
@@ -123,8 +135,14 @@ OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 MOST_COMPONENTS = 4
 """The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
 
+RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
+"""Word for the momentum of an angle -> the rate of this angle in known formulas."""
+
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
+
+OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
+"""Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
 
 RARE = ("annulus", "thin tube", "conical shell")
 """Bodies whose moments a faulty formula is unlikely to mean."""
@@ -182,6 +200,8 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
     Some authors define products of inertia as integrals without the minus sign.
     """
+    if claim.context.sign_of_products == "minus":
+        return ()
     if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in _letters(formula)):
         return ()
     for edit in _edits(claim, formula):
@@ -193,9 +213,58 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
-    near = _near(claim, named)
+    if claim.hypotheses:
+        return _near(claim, named) if _are_usable(claim) else None
+    near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
     is_open = words_of(named) is not None or named.solve is None
     return _edited(claim, named) if near is None and is_open else near
+
+
+def verdict_near_relation(claim: Claim) -> Verdict | None:
+    """Return the verdict "doubtful" on a false equation if one change makes it a known relation; otherwise None."""
+    assert claim.relation is not None
+    return None if claim.hypotheses else _near_relation(claim, *claim.relation[1:])
+
+
+def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
+    """Return the verdict "doubtful" if one change makes an equation a known relation, solved for one of its letters."""
+    if len(_letters(left) | _letters(right)) < LEAST_SYMBOLS_RELATED:
+        return None
+    atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
+    order = sorted(atoms, key=lambda atom: atom.value != "diff")  # rates first
+    for named in islice(solved_claims(left, right, order), MOST_SOLVED):
+        verdict = _near(claim, named)
+        if verdict is not None:
+            repairs = tuple(_in_claim(repair, left, right, named) for repair in verdict.repairs)
+            return replace(verdict, repairs=repairs)
+    return None
+
+
+def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
+    """Return a corrected equation, found solved for one letter, with each term on the side where the claim has it."""
+    sides = put_back(left, right, named, read_relation(repair.text)[2])
+    return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
+
+
+def _are_usable(claim: Claim) -> bool:
+    """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
+
+    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known formulas.
+    """
+    short = claim.defining
+    return all(
+        sign == "==" and (short.get(str(left.value)) == right or _is_norm(left, right) or _is_norm(right, left))
+        for sign, left, right in claim.hypotheses
+    )
+
+
+def _is_norm(side: Node, other: Node) -> bool:
+    """Return whether an equation says that a sum of squares, or a length, is one."""
+    squares = side.args if side.kind == "sum" else (side,)
+    return other == number(1) and all(
+        (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
+        for term in squares
+    )
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
@@ -204,15 +273,15 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     nearby = near_formulas(claim, named, lambda known: _has_word(known.name, words))
     plain = _plain(named)
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * _misfit(plain, near.known.name))
-    of_bodies = (near.is_shifted for near in nearby if _is_of_body(near.code, near.known.name))
-    shifted = next(of_bodies, False)
+    of_bodies = [near for near in nearby if _is_of_body(near.code, near.known.name)]
+    shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
         tried.add(near.tree)
-        if not _is_evident(named, near) or (shifted and _is_of_body(near.code, near.known.name)):
+        if not _is_evident(claim, named, near) or (shifted and _is_of_body(near.code, near.known.name)):
             continue
         if _says_too_little(claim, named, near):
             continue
@@ -268,34 +337,58 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
 
 
-def _is_evident(named: NamedFormula, near: Near) -> bool:
+def _is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
     letters, words = _letters(named.formula), words_of(named)
+    count = len(letters | _letters(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not _letters(near.tree) <= letters
-    is_equal = near.code == "wrong_symbol" and letters <= _letters(near.tree)
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_equal):
+    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
+    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         return words is not None
-    if near.code == "extra_term":
-        return False  # the formula may be a more general one
     is_general = not letters <= _letters(near.tree)  # the formula may have a letter of its own
-    if is_general and not (near.code == "wrong_symbol" and len(letters) >= MANY_LETTERS):
+    is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
+    if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
+        return False  # the formula may be a more general one
+    if is_general and not (near.code == "wrong_symbol" and count >= MANY_LETTERS):
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
+    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+        return True
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
+        return True
     if words is None:
-        return len(letters) >= MANY_LETTERS
+        return max(count, near.array_letters) >= MANY_LETTERS
     is_sum = _has_terms(named.formula)
     if near.code == "sign_of_term" and not is_sum:
         return False  # the direction of an axis or angle may be the other one
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
-    return len(letters) >= least
+    return max(count, near.array_letters) >= least
+
+
+def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether the context of a claim says that its quantity is the one of a known formula."""
+    meaning = claim.context.meaning_of(_plain(named))
+    return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
+    """Return whether the angle or function of a component of a quaternion is wrong: beta_1 = e_1 sin(phi)."""
+    place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
+    word, _, rest = near.known.name.partition(" component of the quaternion of axis")
+    return (
+        place is not None
+        and near.code in ("half_angle", "double_half_angle", "sin_cos_swap")
+        and bool(rest)
+        and place[2] in COMPONENTS.get(word, "")
+    )
 
 
 def _has_terms(formula: Node) -> bool:
@@ -315,7 +408,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not _has_terms(named.formula))
-        if not readings or is_open or _is_of_body(edit.code, readings[0].name):
+        is_exchange = edit.code == "wrong_symbol" and _letters(edit.tree) == letters  # the letters mean something else
+        if not readings or is_open or is_exchange or _is_of_body(edit.code, readings[0].name):
             continue
         strangeness = _strangeness(named, readings[0])
         if nearest is None or strangeness < nearest[0]:
@@ -444,6 +538,10 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
     An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
     centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
+    momentum = re.match(r"momentum of (\w+)", known.name)
+    angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
+    if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
+        return False
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -453,6 +551,12 @@ def _keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
         return False  # the whole spin is no rate of an angle
+    if (own_angle := re.fullmatch(r"p_?(phi|theta|psi|varphi)", named.name)) and "momentum of" in known.name:
+        rate = next((new for word, old in RATES.items() if f"momentum of {word}" in known.name
+                     for new in [known.mapping.get(old, old)]), "")  # fmt: skip
+        return plain_name(rate) == f"d{own_angle[1]}" and not (
+            "nutation" in known.name and own_angle[1] in ("phi", "psi")
+        )
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False
@@ -471,7 +575,9 @@ def _fits_context(context: Context, named: NamedFormula, known: Identification, 
     """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
     if not context:
         return True
-    return admits_name(context, known.name, _plain(named)) and admits_letters(context, known.mapping, letters)
+    return admits_name(context, known.name, _plain(named)) and admits_letters(
+        context, known.name, known.mapping, letters
+    )
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
@@ -488,7 +594,7 @@ def _plain(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how many of component and frame a known formula has other than the name of a quantity says: 0, 1 or 2."""
+    """Count the mismatches between a known formula and the name of a quantity: the component, the frame (0, 1 or 2)."""
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip

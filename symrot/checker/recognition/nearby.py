@@ -10,15 +10,19 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import chain
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
+from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
-from symrot.checker.recognition.pairing import absent_name, renamings, strangeness
+from symrot.checker.recognition.letters import POINTS, is_atom, letters_of_formula, nodes_of, pieces_of, text_of
+from symrot.checker.recognition.moments import is_shifted_moment, is_symmetric_body
+from symrot.checker.recognition.pairing import absent_name, is_fitting, renamings, strangeness
 from symrot.checker.recognition.parts import (
     LACKING,
     Change,
@@ -35,18 +39,16 @@ from symrot.checker.recognition.parts import (
     values_of,
     variants,
 )
-from symrot.checker.repair.edits import COST, OPPOSITE, PRODUCT_OF_INERTIA, flattened, normalise_factors
+from symrot.checker.recognition.renaming import is_consistent
+from symrot.checker.recognition.solved_relations import solved_relations
+from symrot.checker.repair.edits import COST, PRODUCT_OF_INERTIA, flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
-from symrot.checker.repair.points import UndefinedValue, points
+from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 from symrot.checker.units.units import read_unit
 
 __all__ = ["Near", "near_formulas"]
 
-MOST_DRAWS = 40
-"""The most random points that are drawn to find some where a formula has a value."""
-POINTS = 3
-"""The number of points at which formulas are compared."""
 MOST_PAIRS = 1500
 """The most pairs of a known formula and a renaming that are compared."""
 MOST_NODES = 500
@@ -61,7 +63,10 @@ class Near(NamedTuple):
     """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
 
     ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
-    than the known one. If ``is_shifted``, it is larger but no multiple, like a moment about a parallel axis.
+    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, like one about a parallel axis.
+    If ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed,
+    if that is a symbol. ``array_letters`` is the number of components and other letters of a formula with vectors or
+    matrices, otherwise 0.
     """
 
     cost: float
@@ -71,103 +76,65 @@ class Near(NamedTuple):
     renamed: int
     has_other_unit: bool
     is_shifted: bool
+    is_symmetric: bool
+    letter: str
+    array_letters: int = 0
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first."""
+    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
+
+    There is none if the formula has the values of a known one at the points, as it may by the hypotheses of the claim.
+    """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
-    letters = _letters(claim, named)
+    letters = letters_of_formula(claim, named)
     if letters is None:
         return []
     scale = values_of(named.formula, letters.points)
     if scale is None:
         return []
-    search = _search(named, letters)
-    names = [_text(atom) for atom in letters.atoms]
-    inside = {node for angle in letters.angles for node in _nodes(angle)}
-    angles = {_text(atom) for atom in letters.atoms if atom in inside}
+    search = _search(claim, named, letters, scale)
+    names = [text_of(atom) for atom in letters.atoms]
+    inside = {node for angle in letters.angles for node in nodes_of(angle)}
+    angles = {text_of(atom) for atom in letters.atoms if atom in inside}
     nearest: dict[tuple[Node, str], Near] = {}
     pairs = 0
-    for known in _known_formulas():
-        is_wrong_kind = _is_column(known) != is_matrix(scale[0]) or not fits(known)
+    quantity = text_of(_quantity(named))
+    for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
+        is_wrong_kind = _is_column(known) != is_matrix(scale[0])
         is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
         for renaming in renamings(_names(known), names, angles):
+            own = [(old, new) for old, new in renaming.items() if new is not None]
+            if mine and not is_consistent([*own, (mine, quantity)]):
+                continue
             pairs += 1
             if pairs > MOST_PAIRS:
                 break
-            for candidate in _compared(search, known, renaming):
+            compared = _compared(search, known, renaming)
+            if compared is None and claim.hypotheses:
+                return []
+            for candidate in compared or ():
                 key = (candidate.tree, known.name)
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
 
 
-def _letters(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses."""
-    numeric = NumericFilter(claim)
-    hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
-    narrow = any(node.value in ("asin", "acos", "cos") for node in (named.side, *_nodes(named.formula)))
-    drawn = points(
-        numeric.symbols, numeric.functions, numeric.definitions, hypotheses, frozenset(),
-        count=POINTS if hypotheses else MOST_DRAWS, most=0.9 if narrow else 1.7,
-    )  # fmt: skip
-    roots = [node.args[0] for node in _nodes(named.formula) if node.kind == "call" and node.value == "sqrt"]
-    defined = [point for point in drawn if values_of(named.formula, [point]) is not None]
-    at = sorted(defined, key=lambda point: -min((point.value(root) for root in roots), default=0.0))[:POINTS]
-    if len(at) < POINTS:
-        return None
-    trees, atoms, angles = [named.formula], dict[Node, Values](), dict[Node, Values]()
-    while trees:
-        tree = trees.pop()
-        if tree.kind == "call" and tree.value in OPPOSITE:
-            angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if _is_atom(tree):
-            if tree.kind == "name" and tree.value in numeric.definitions:
-                trees.append(numeric.definitions[str(tree.value)])
-            elif tree.value != "pi":
-                atoms[tree] = values_of(tree, at) or ()
-        else:
-            trees.extend(tree.args)
-    if not all(map(len, (*atoms.values(), *angles.values()))) or any(is_matrix(v[0]) for v in atoms.values()):
-        return None
-    places = [
-        PointOfLetters(
-            dict(point.symbols), {}, numeric.definitions, _pieces(named.formula),
-            rates={atom: values[place] for atom, values in atoms.items() if atom.kind == "call"},
-        )
-        for place, point in enumerate(at)
-    ]  # fmt: skip
-    return Letters(atoms, angles, places)
+def _quantity(named: NamedFormula) -> Node:
+    """Return the name or the rate for which a claim is solved."""
+    atoms = (node for _, node in walk(named.side) if is_atom(node))
+    own = (atom for atom in atoms if named.name in (atom.value, *(str(n.value) for _, n in walk(atom))))
+    return next(own, named.side)
 
 
-def _pieces(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of the parts of a tree."""
-    return frozenset(id(node) for _, node in walk(tree))
-
-
-def _nodes(tree: Node) -> list[Node]:
-    return [node for _, node in walk(tree)]
-
-
-def _is_atom(tree: Node) -> bool:
-    if tree.kind == "name":
-        return True
-    inner = tree
-    while inner.kind == "call" and inner.value == "diff" and set(inner.args[1:]) == {TIME}:
-        inner = inner.args[0]
-    return inner.kind == "call" and inner.args == (TIME,) and tree.kind == "call"
-
-
-def _text(atom: Node) -> str:
-    """Return the text of a symbol or rate, as SymPy's printer writes it."""
-    if atom.kind == "name":
-        return str(atom.value)
-    return f"diff({_text(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (
-        f"{atom.value}(t)"
-    )  # fmt: skip
+def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
+    """Yield the known relations, solved for the symbols that a quantity may be, with these symbols."""
+    for name, known in solved_relations():
+        if is_fitting(name, quantity, is_angle=False):
+            yield name, known
 
 
 @cache
@@ -187,7 +154,7 @@ _BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "
 
 @cache
 def _known_pieces(known: Known) -> frozenset[int]:
-    return _pieces(_tree(known))
+    return pieces_of(_tree(known))
 
 
 def _is_column(known: Known) -> bool:
@@ -206,11 +173,17 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point."""
+    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
+
+    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula; ``values`` are
+    the values of the formula itself.
+    """
 
     named: NamedFormula
     letters: Letters
     variants: dict[Path, list[tuple[float, Variant]]]
+    arrays: list[ArrayFault]
+    values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
         """Yield the variants of a part that have the values that the part should have."""
@@ -231,24 +204,27 @@ CLOSE = 1e-8
 """The largest relative difference between values that are compared further."""
 
 
-def _search(named: NamedFormula, letters: Letters) -> Search:
+def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})
         for point, value in zip(letters.points, RANDOM, strict=True)
-    ])  # fmt: skip
+    ], letters.aliases)  # fmt: skip
     kinds = {path: node.kind for path, node in walk(named.formula)}
     by_path = {}
     for path, node in walk(named.formula):
         parent = kinds[path[:-1]] if path else ""
         made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
         by_path[path] = sorted(made, key=lambda pair: pair[0])
-    return Search(named, letters, by_path)
+    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters), values)
 
 
-def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near]:
-    """Return the formulas that result from one change, if a claim means a known formula under a renaming."""
+def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
+    """Return the formulas that result from one change, if a claim means a known formula under a renaming.
+
+    Return None if the claim has the values of that formula already.
+    """
     named, letters = search.named, search.letters
-    atoms = {_text(atom): atom for atom in letters.atoms}
+    atoms = {text_of(atom): atom for atom in letters.atoms}
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
     own = [
         PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, _known_pieces(known))
@@ -257,48 +233,64 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     target = values_of(_tree(known), own)
     if target is None:
         return []
-    changes: list[tuple[Path, Change]] = []
+    changes: list[tuple[Path, Change, str]] = []
+    by_edit: list[tuple[float, str, Node, str]] = []
     for view in (*_views(known, target), *_with_other_products(known, own)):
         needed = _needed(named, known, view, letters)
+        if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
+            return None
         if needed is not None and _is_promising(search, needed):
             for part in parts(named.formula, letters.points, needed):
-                changes += ((part.path, change) for change in _changes(search, part))
-    trees = [(change.cost, change.code, _repaired(named.formula, path, change)) for path, change in changes]
+                letter = text_of(part.node) if is_atom(part.node) else ""
+                changes += ((part.path, change, letter) for change in _changes(search, part))
+        if needed is not None:
+            by_edit += ((edit.cost, edit.code, edit.tree, "") for edit in matching(search.arrays, needed))
+    trees = [
+        (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
+    ]
+    trees += by_edit
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
         for part in parts(_tree(known), own, actual):
             if is_absent(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
-                trees.append((cost, code, _renamed(_tree(known), {mine: LACKING if other is None else atoms[other]
-                                                                  for mine, other in renaming.items()})))  # fmt: skip
+                trees.append(
+                    (
+                        cost,
+                        code,
+                        _renamed(
+                            _tree(known),
+                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                        ),
+                        "",
+                    )
+                )
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
     name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
-    lacking = Node("name", name) if absent is not None else None
+    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
+    timed = Node("call", name, (TIME,))
+    lacking = (timed if timed in moving else Node("name", name)) if absent is not None else None
     if lacking in letters.atoms:
         return []
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
     other_unit = _has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
-    is_shifted = actual is not None and _is_shifted(actual, target)
+    is_central = "about its centre of mass" in known.name
+    is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
+    array_letters = len(letters.atoms) if search.arrays else 0
     near_ones = []
-    for cost, code, tree in trees:
-        has_lacking = LACKING in _nodes(tree)
+    for cost, code, tree, letter in trees:
+        has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        near_ones.append(Near(cost, code, whole, known, renamed, other_unit, is_shifted))
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming)
+        flags = other_unit, is_shifted, is_symmetric
+        near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters))
     return near_ones
-
-
-def _is_shifted(actual: Values, known: Values) -> bool:
-    """Return whether values are larger than those of a known formula, and no multiple of them."""
-    if any(map(is_matrix, (*actual, *known))) or not all(known):
-        return False
-    ratios = [value / other for value, other in zip(actual, known, strict=True)]
-    return min(ratios) > 1 and not all(near(ratio, ratios[0]) for ratio in ratios)
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
@@ -429,7 +421,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
             values.append(value)
             continue
         name = named.name
-        rates = {node: value for _, node in walk(named.side) if _is_atom(node) and node.kind == "call"}
+        rates = {node: value for _, node in walk(named.side) if is_atom(node) and node.kind == "call"}
         whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
         try:
             values.append(whole.value(named.side))

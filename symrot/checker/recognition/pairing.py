@@ -12,12 +12,12 @@ from itertools import islice
 from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
 from symrot.checker.recognition.renaming import axes_of, is_consistent
 
-__all__ = ["absent_name", "renamings", "strangeness"]
+__all__ = ["absent_name", "is_fitting", "renamings", "strangeness"]
 
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
 
-MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmn]"}
+MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmnvf](_[xyz1-3])?"}
 """Unit -> letters that books use for it in long formulas, where other letters say what is meant."""
 
 INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
@@ -26,8 +26,17 @@ INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
 ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 """Euler angle -> its index where all three have one letter, as theta_1, theta_2 and theta_3."""
 
+RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
+"""Component of an angular velocity -> the letter of an aircraft's rate."""
+
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
+
+RADIUS = re.compile(r"[rR](_?\w+)?|a")
+"""The letters of radii; a is also the side of a box."""
+
+UNUSUAL = 2
+"""The number of changed names as which a letter counts that is unusual for a length of its kind."""
 
 MOST_STEPS = 400
 """The most partial renamings of one known formula that are tried."""
@@ -44,7 +53,7 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
     """
     if abs(len(known) - len(own)) > 1:
         return []
-    fitting = {name: [other for other in own if _fits(name, other, other in angles)] for name in known}
+    fitting = {name: [other for other in own if is_fitting(name, other, other in angles)] for name in known}
     order = sorted(known, key=lambda name: (len(fitting[name]), name))
     complete = []
     for absent in (*([""] if len(known) <= len(own) else []), *order):  # the name that the claim lacks, or none
@@ -62,8 +71,14 @@ def _moved(renaming: dict[str, str | None]) -> int:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a name that the claim lacks counts too."""
-    return sum(other is None or plain_name(other) != name for name, other in renaming.items())
+    """Return how many names a renaming changes; a name that the claim lacks counts too.
+
+    A letter for radii in place of another length, or the other way round, counts more.
+    """
+    changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
+    unusual = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and (other := renaming[name]) is not None
+               and bool(RADIUS.fullmatch(name)) != bool(RADIUS.fullmatch(other))]  # fmt: skip
+    return len(changed) + UNUSUAL * len(unusual)
 
 
 def _extended(
@@ -87,7 +102,7 @@ def _extended(
 
 
 @lru_cache(maxsize=20_000)
-def _fits(known: str, own: str, is_angle: bool) -> bool:
+def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     """Return whether the names of a claim's quantity and of a known formula's quantity may mean the same."""
     name = plain_name(own)
     if known == name:
@@ -98,6 +113,8 @@ def _fits(known: str, own: str, is_angle: bool) -> bool:
     is_rate = own.startswith("diff(") or own.endswith("dot")
     if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
+    if known in ("x", "y", "z") and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
+        return True  # a component of any vector, such as a rotated velocity
     if is_angle:
         return unit in ("rad", None)
     pattern = MORE_LETTERS.get(unit or "", LETTERS.get(unit or ""))
@@ -117,6 +134,8 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
             return other[:-1] + ORDER[known], True
         if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
             return known, True
+    if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
+        return RATES[known], True
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():

@@ -31,6 +31,8 @@ __all__ = [
     "multiples",
     "near",
     "parts",
+    "rates_of_entries",
+    "rational",
     "values_of",
     "variants",
 ]  # fmt: skip
@@ -45,6 +47,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "cot": lambda x: 1 / math.tan(x),
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
 }  # fmt: skip
+TIME = Node("name", "t")
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
@@ -74,11 +77,15 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Letters:
-    """The symbols and rates of a formula, and the arguments of its angular functions, with their values."""
+    """The symbols and rates of a formula, and the arguments of its angular functions, with their values.
+
+    ``aliases`` are names that stand for a formula of the letters, such as c1 for cos(alpha).
+    """
 
     atoms: Mapping[Node, Values]
     angles: Mapping[Node, Values]
     points: Sequence[Point]
+    aliases: Mapping[Node, Values] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -94,7 +101,16 @@ class PointOfLetters(Point):
     def _value(self, node: Node) -> Any:
         if node.kind == "call" and node in self.rates:
             return self.rates[node]
+        if node.kind == "call" and node.value == "diff" and str(node.args[0].value) in self.definitions:
+            return super()._value(rates_of_entries(self.definitions[str(node.args[0].value)], node.args[1:]))
         return super()._value(node)
+
+
+def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
+    """Return a matrix of functions of time in which the derivative of each function replaces it."""
+    if tree.kind == "call" and tree.args == (TIME,):
+        return Node("call", "diff", (tree, *variables))
+    return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
 
 
 def values_of(node: Node, points: Sequence[Point]) -> Values | None:
@@ -254,7 +270,8 @@ def multiples(part: Part) -> Iterator[Change]:
     if part.node.kind == "number":
         value = ratio * part.node.value
         if value > 0:
-            cost = COST["factor"] + COST["per_factor_e"] * abs(math.log(ratio))
+            size = 0.0 if ratio in (2, Fraction(1, 2)) else COST["per_factor_e"] * abs(math.log(ratio))
+            cost = COST["factor"] + size
             yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
     elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
         if ratio == -1:
@@ -283,11 +300,12 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield every other symbol in place of a symbol."""
-    if node not in letters.atoms:
+    """Yield, as replacements of a symbol, all other symbols of the formula."""
+    written = {**letters.atoms, **letters.aliases}
+    if node not in written:
         return
-    alike = neighbours(node.value, letters.names) if node.kind == "name" else ()
-    for other, others in letters.atoms.items():
+    alike = neighbours(node.value, [str(n.value) for n in written if n.kind == "name"]) if node.kind == "name" else ()
+    for other, others in written.items():
         if other != node:
             cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
             yield Variant(Change(other, "wrong_symbol", cost), others)
@@ -341,7 +359,7 @@ def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Ite
         yield Variant(Change(_inverted(node), "wrong_symbol", cost), tuple(1 / value for value in values))
     cost = COST["solved_factor"] + COST["per_piece_added"]
     for atom, factors in _factors(letters):
-        for power in (1, -1, 2, -2):
+        for power in (1, -1, 2, -2) if all(factors) else (1, 2):
             factor = atom if abs(power) == 1 else Node("power", None, (atom, number(2)))
             factor = factor if power > 0 else Node("inv", None, (factor,))
             made = tuple(value * other**power for value, other in zip(values, factors, strict=True))
@@ -356,6 +374,7 @@ def _inverted(node: Node) -> Node:
 
 def _factors(letters: Letters) -> Iterator[tuple[Node, Values]]:
     yield from letters.atoms.items()
+    yield from letters.aliases.items()
     for angle, values in letters.angles.items():
         for name in ("sin", "cos", "tan"):
             yield Node("call", name, (angle,)), tuple(map(FUNCTIONS[name], values))

@@ -75,7 +75,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 @cache
 def _angle(name: str) -> str:
-    """Return the quantity in the name of a rate or of a value in time: phi for dphi; any other name unchanged."""
+    """Return the quantity to which a name belongs: phi for its rate dphi and for phi(t); other names stay unchanged."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name

@@ -1,11 +1,12 @@
 """The canonical form of a tree, which is equal for formulas that differ only in the order of terms and factors."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text
 
-__all__ = ["canonical"]
+__all__ = ["canonical", "terms_of_equation", "with_ordered_products"]
 
 
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
@@ -26,9 +27,72 @@ def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
         return Node("number", 1 / args[0].value)
     if node.kind == "product":
         return _product(args, is_matrix)
-    if node.kind == "power" and args[1] == number(1):
-        return args[0]
+    if node.kind == "power" and not is_matrix(args[0]):
+        return _product([Node("power", None, tuple(args))], is_matrix)
     return Node(node.kind, node.value, tuple(args))
+
+
+def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
+    """Return the base of a factor and its exponent, a number; an exponent with letters stays in the base."""
+    if factor == Node("call", "sqrt", factor.args):
+        base, exponent = _base_and_exponent(factor.args[0])
+        return base, exponent / 2
+    if factor.kind == "inv":
+        base, exponent = _base_and_exponent(factor.args[0])
+        return base, -exponent
+    if factor.kind == "power" and factor.args[1].kind == "number":
+        base, exponent = _base_and_exponent(factor.args[0])
+        return base, exponent * factor.args[1].value
+    return factor, Fraction(1)
+
+
+def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
+    """Return a tree in which scalars stand before scalar and vector products, with the factors of these in order."""
+    args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
+    made = replace(tree, args=args)
+    if tree.kind != "call" or tree.value not in ("dot", "cross"):
+        return product(list(args)) if tree.kind == "product" else negated(args[0]) if tree.kind == "neg" else made
+    scalars: list[Node] = []
+    vectors = []
+    for argument in args:
+        inner = argument.args[0] if argument.kind == "neg" else argument
+        scalars += [number(-1)] if argument.kind == "neg" else []
+        factors = inner.args if inner.kind == "product" else (inner,)
+        scalars += [factor for factor in factors if not is_matrix(factor)]
+        vectors.append(product([factor for factor in factors if is_matrix(factor)]))
+    if not all(map(is_matrix, vectors)):
+        return made
+    ordered = sorted(vectors, key=text)
+    scalars += [number(-1)] if tree.value == "cross" and ordered != vectors else []
+    return product([*scalars, replace(tree, args=tuple(ordered))])
+
+
+def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
+    """Return the terms of ``left - right`` with their numbers, equal terms collected, scaled so that one number is 1.
+
+    It is empty if both sides are the same formula, and equal for equations that differ by moving terms from one side
+    to the other, or by a number or sign on both sides.
+    """
+    totals: dict[Node, Fraction] = {}
+    for side, sign in ((left, 1), (right, -1)):
+        whole = canonical(side, is_matrix)
+        for term in whole.args if whole.kind == "sum" else (whole,):
+            core, size = _without_number(term)
+            totals[core] = totals.get(core, Fraction(0)) + sign * size
+    terms = sorted(((core, size) for core, size in totals.items() if size), key=lambda pair: text(pair[0]))
+    return frozenset((core, size / terms[0][1]) for core, size in terms)
+
+
+def _without_number(term: Node) -> tuple[Node, Fraction]:
+    """Return a canonical term without the number in front of it, and this number."""
+    if term.kind == "neg":
+        core, size = _without_number(term.args[0])
+        return core, -size
+    if term.kind == "number":
+        return number(1), term.value
+    if term.kind == "product" and term.args[0].kind == "number":
+        return product(list(term.args[1:])), term.args[0].value
+    return term, Fraction(1)
 
 
 def _product(args: list[Node], is_matrix: Callable[[Node], bool]) -> Node:
@@ -37,11 +101,18 @@ def _product(args: list[Node], is_matrix: Callable[[Node], bool]) -> Node:
     size = Fraction(1)
     scalars: list[Node] = []
     matrices: list[Node] = []
+    powers: dict[Node, Fraction] = {}
     for factor in inner.args if inner.kind == "product" else (inner,):
         if factor.kind == "number":
             size *= factor.value
+        elif is_matrix(factor):
+            matrices.append(factor)
         else:
-            (matrices if is_matrix(factor) else scalars).append(factor)
+            base, exponent = _base_and_exponent(factor)
+            powers[base] = powers.get(base, Fraction(0)) + exponent
+    for base, exponent in powers.items():
+        if exponent:
+            scalars.append(base if exponent == 1 else Node("power", None, (base, Node("number", exponent))))
     front = [Node("number", size)] if size != 1 or not (scalars or matrices) else []
     made = product([*front, *sorted(scalars, key=text), *matrices])
     return negated(made) if whole.kind == "neg" else made

@@ -15,7 +15,7 @@ from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
 from symrot.checker.claim.tree import text as written
 from symrot.checker.decide.decision import Equation, decide_equation
-from symrot.checker.repair.canonical_form import canonical
+from symrot.checker.repair.canonical_form import canonical, terms_of_equation, with_ordered_products
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
 from symrot.checker.repair.entries import by_entries
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
@@ -27,7 +27,7 @@ from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 
-__all__ = ["diagnose"]
+__all__ = ["MOST_REPAIRS", "diagnose"]
 
 MOST_EDITS = 40_000
 """The most edits of one tree."""
@@ -47,7 +47,13 @@ TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_sy
 """The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
 
 AS_NEAR = 0.35
-"""The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair."""
+"""The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair.
+
+The same holds for a repair if a nearer edit makes both sides the same formula.
+"""
+
+MOST_COSTLY = 9.0
+"""More than the cost of any repair."""
 
 
 def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair, ...]]:
@@ -81,6 +87,7 @@ class _Search:
         self.conditional = bool(decision.requires)  # then the claim lacks its condition, not a term
         self.products = decision.products
         self.seen: set[tuple[float, ...]] = set()  # values of the candidates that were decided
+        self.forms: set[Any] = set()  # equations of the candidates that were decided, with their terms collected
         self.alike: list[Candidate] = []  # candidates with the values of an earlier one
         self.accepted: list[Candidate] = []  # proven candidates
         self.tautologies: list[tuple[float, str]] = []  # cost and code of edits that make both sides the same formula
@@ -90,7 +97,9 @@ class _Search:
         numeric = self.numeric
         if len(numeric.points) < 2:
             return ()
-        changes = sorted(self.changes(), key=lambda change: (change.cost, change.place))
+        self.forms.add(self.equation_form(()))
+        order = sorted(numeric.places, key=lambda place: (*(place != side for side in SIDES), place))
+        changes = sorted(self.changes(), key=lambda change: (change.cost, order.index(change.place)))
         edited = [Candidate(c.cost, c.edit.code, (c,)) for c in changes if numeric.holds([c])]
         stages: Sequence[Callable[[], Iterable[Candidate]]] = (
             lambda: sorted(
@@ -104,11 +113,12 @@ class _Search:
         for stage in stages:
             if len(repairs) < MOST_REPAIRS:
                 repairs += self.proven(stage(), MOST_REPAIRS - len(repairs))
-        if not repairs:
+        if not repairs and not self.conditional:
             repairs = self.proven(joined_pairs(numeric, changes), MOST_REPAIRS)
-        if not repairs:
+        if not repairs and not self.conditional:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
-        repairs.sort(key=lambda repair: repair.cost)
+        nearest = min((cost for cost, _ in self.tautologies), default=MOST_COSTLY)
+        repairs = sorted((r for r in repairs if r.cost <= nearest + AS_NEAR), key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:
             repairs += self.others(repairs)
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
@@ -130,10 +140,20 @@ class _Search:
 
     def canonical_form(self, changes: Sequence[Change]) -> tuple[Node, ...]:
         """Return the trees of a repaired claim, with terms and scalar factors in a canonical order."""
+        return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
+
+    def equation_form(self, changes: Sequence[Change]) -> Any:
+        """Return a repaired claim with its terms collected: equal for repairs that only move terms."""
+        left, right, *definitions = self.trees(changes)
+        canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
+        left, right = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
+        return terms_of_equation(left, right, self.numeric.is_matrix), canonical_definitions
+
+    def trees(self, changes: Sequence[Change]) -> tuple[Node, ...]:
+        """Return the sides and the definitions of a repaired claim."""
         claim = self.numeric.edited(changes)
         assert claim.relation is not None
-        trees = (*claim.relation[1:], *(tree for _, tree in claim.define))
-        return tuple(canonical(tree, self.numeric.is_matrix) for tree in trees)
+        return (*claim.relation[1:], *(tree for _, tree in claim.define))
 
     def changes(self) -> Iterator[Change]:
         """Yield the single edits of the sides and definitions of the claim."""
@@ -167,8 +187,8 @@ class _Search:
         """
         if len(self.numeric.sides_to_edit) < len(SIDES):
             return False
-        left, right, *_ = self.canonical_form(changes)
-        return left == right
+        left, right, *_ = self.trees(changes)
+        return not terms_of_equation(left, right, self.numeric.is_matrix)
 
     def cancels(self, equation: Equation) -> bool:
         """Return whether one repaired side cancels to a number, such as ``x/(x/y)/y``, or both do, as in ``x/x == 1``.
@@ -199,10 +219,14 @@ class _Search:
                 if not bare and code in TELLING:
                     self.tautologies.append((cost, code))
                 continue
+            form = self.equation_form(candidate.changes)
+            if form in self.forms:
+                continue
             if values in self.seen:
                 self.alike.append(candidate)
                 continue
             self.seen.add(values)
+            self.forms.add(form)
             attempts += 1
             text = self.numeric.text(candidate.changes)
             try:
@@ -212,11 +236,19 @@ class _Search:
             except InputError:
                 continue
             self.products += decision.products
-            if decision.verdict == "true" and not self.cancels(equation):
+            ranges = "" if self.conditional else _ranges(decision)
+            if (decision.verdict == "true" or ranges) and not self.cancels(equation):
                 parts = {change.place: written(change.edit.tree) for change in candidate.changes}
-                repairs.append(Repair(text, code, round(cost, 3), edited=parts))
+                repairs.append(Repair(text, code, round(cost, 3), edited=parts, requires=ranges))
                 self.accepted.append(candidate)
         return repairs
+
+
+def _ranges(decision: Decision) -> str:
+    """Return the range of angles or signs in which a conditional formula holds; empty for any other decision."""
+    needed = decision.requires[:1]
+    is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)
+    return needed[0].text if needed and is_range else ""
 
 
 def _symbols(formula: Any) -> set[Any]:

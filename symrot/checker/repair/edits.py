@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import isqrt
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
@@ -60,8 +61,9 @@ COST = {
     "sin_cos_swap": 1.0, "wrong_symbol": 1.0, "half_angle": 1.05, "double_half_angle": 1.05, "factor": 1.1,
     "two_faults": 1.6, "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
     # added to the cost of the code
-    "in_definition": 0.4, "number_off_by_one": 0.15, "square_left_out": 0.15, "name_transposed": 0.02,
-    "rows_as_columns": 0.01, "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "in_definition": 0.4, "number_off_by_one": 0.15, "name_transposed": 0.02,
+    "rows_as_columns": 0.01, "names_exchanged": 0.1, "root_left_out": 0.1,
+    "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
     "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
     # one fault everywhere in a tree
     "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
@@ -85,6 +87,9 @@ COST = {
 MOST_NEIGHBOURS = 12
 """The most names that are tried in place of one name."""
 
+MOST_NAMES_EXCHANGED = 6
+"""The most names of a product of which two are exchanged."""
+
 MOST_TERMS_IN_PAIRS = 6
 """The most terms of a sum of which two signs are changed together."""
 
@@ -92,7 +97,6 @@ FEW = 3
 """Up to this number of occurrences of an angle, all of them are as likely to be wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
-OFTEN_SQUARED = ("exp", "sinh", "cosh", "tanh")
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
 _STEM = re.compile(r"([A-Za-z]+?)_?([0-9]+|[xyz]{1,2}|[sb])")
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -147,12 +151,33 @@ def single_edits(
     """
     yield from _everywhere(tree, matrices)
     order = "frame_body_space" if moving else "commutator_order"
-    entries = {id(member) for _, node in walk(tree) if node.kind == "list" for member in node.args}
+    nodes = [node for _, node in walk(tree)]
+    entries = {id(member) for node in nodes if node.kind == "list" for member in node.args}
+    exponents = {id(node.args[1]) for node in nodes if node.kind == "power"}
+    closed = {id(part) for node in nodes if node.kind in ("power", "index", "call") and not _has_values(node)
+              for part in node.args}  # fmt: skip
     for path, node in walk(tree):
         if not opened(path):
             continue
         for code, made, extra in _changes(node, path, names, functions, matrices, order, id(node) in entries):
+            is_exponent = code == "factor" and id(node) in exponents
+            code = "exponent" if is_exponent else code
             yield Edit(code, COST[code] + extra, path, _put(tree, path, made))
+        if id(node) not in closed and _is_scalar(node, matrices):
+            squared = Node("power", None, (node, number(2)))
+            yield Edit("exponent", COST["exponent"], path, _put(tree, path, squared))
+
+
+def _has_values(node: Node) -> bool:
+    """Return whether the arguments of a function are values that may lack a square, such as entries of a matrix."""
+    return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
+
+
+def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
+    """Return whether a part is a letter, a length or another function whose square may be missing."""
+    if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
+        return False
+    return not matrices(node) or node.value in ("dot", "det", "trace")
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
@@ -195,8 +220,8 @@ def _changes(
             if value > 0 or (value == 0 and (not path or lone)):
                 doubled = value in (node.value * 2, node.value / 2)
                 yield "factor", number(value), 0.0 if doubled else COST["number_off_by_one"]
-    elif node.kind == "power" and node.args[0].kind == "call" and node.args[1].value == 2:
-        yield "factor", node.args[0], COST["square_left_out"]
+    elif node.kind == "power" and node.args[1] == number(2):
+        yield "exponent", node.args[0], 0.0
     elif node.kind == "transpose":
         yield "active_passive_transpose", node.args[0], 0.0
     if node.kind == "call" and node.value == "Matrix" and node.args[0].kind == "list":
@@ -240,6 +265,8 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
     for both in itertools.combinations(range(len(terms)), 2) if 2 < len(terms) <= MOST_TERMS_IN_PAIRS else ():
         signs = [negated(term) if place in both else term for place, term in enumerate(terms)]
         yield "two_faults", sum_of(signs), 0.0
+    for factor in (number(2), number(Fraction(1, 2))) if len(terms) <= MOST_TERMS_IN_PAIRS else ():
+        yield "factor", product([factor, node]), COST["product_doubled_or_halved"]
     for place, term in enumerate(terms):
         others = [*terms[:place], *terms[place + 1 :]]
         yield "sign_of_term", sum_of([*terms[:place], negated(term), *terms[place + 1 :]]), 0.0
@@ -262,9 +289,42 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
             rest = [number(1), *rest]
         yield "factor", product(rest), COST["factor_removed"]
     yield from _of_quotients(factors)
+    yield from _with_exchanged_names(node, matrices)
+    yield from _with_roots(node, matrices)
     if not any(map(matrices, factors)):
         yield "factor", product([number(2), node]), COST["product_doubled_or_halved"]
         yield "factor", product([number(Fraction(1, 2)), node]), COST["product_doubled_or_halved"]
+
+
+def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
+    """Yield a product with the root of its numbers, and with the root of its other factors."""
+    if any(map(matrices, node.args)):
+        return
+    kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
+    numbers, others = (
+        [f for f, named in zip(node.args, kinds, strict=True) if named == kind] for kind in (False, True)
+    )
+    for rooted, rest in ((numbers, others), (others, numbers)):
+        if rooted and rest and not all(map(_is_square, rooted)):
+            yield "exponent", product([*rest, Node("call", "sqrt", (product(rooted),))]), COST["root_left_out"]
+
+
+def _is_square(node: Node) -> bool:
+    """Return whether a factor is the square of a rational number, or the inverse of one."""
+    value = (node.args[0] if node.kind == "inv" else node).value
+    return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
+
+
+def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
+    """Yield a product in which two vectors, or two letters that are easily confused, have changed their places."""
+    names = list(dict.fromkeys(part for _, part in walk(node) if part.kind == "name" and part.value != "pi"))
+    if len(names) > MOST_NAMES_EXCHANGED or all(part.kind == "name" for part in node.args):
+        return
+    for first, second in itertools.combinations(names, 2):
+        if (matrices(first) and matrices(second)) or second.value in neighbours(first.value, [second.value]):
+            hole = Node("name", "?")
+            made = _substituted(_substituted(_substituted(node, first, hole), second, first), hole, second)
+            yield "wrong_symbol", made, COST["names_exchanged"]
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
@@ -307,6 +367,8 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         (argument,) = arguments
         yield "half_angle", replace(node, args=(product([argument, Node("inv", None, (number(2),))]),)), 0.0
         yield "double_half_angle", replace(node, args=(product([number(2), argument]),)), 0.0
+    elif name == "sqrt":
+        yield "exponent", arguments[0], COST["root_left_out"]
     elif name in ROTATIONS:
         yield "active_passive_transpose", replace(node, args=(negated(arguments[0]),)), 0.0
         for axis in _spelled_like(name):
@@ -316,8 +378,6 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
         yield "sign_of_term", replace(node, args=arguments[::-1]), COST["cross_product_order"]
-    elif name in OFTEN_SQUARED:
-        yield "factor", Node("power", None, (node, number(2))), COST["square_left_out"]
     elif name in functions:
         for other in neighbours(name, functions):
             yield "wrong_symbol", replace(node, value=other), 0.0

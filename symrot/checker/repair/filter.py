@@ -56,6 +56,7 @@ class NumericFilter:
         names = _named(trees)
         self.functions = sorted({*claim.functions, *(name for name, called in names if called)})
         loose = {name for name, called in names if not called and claim.implied and name != "pi"}
+        loose -= {*self.definitions}  # a vector has the value of its components
         self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions})
         hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
         narrow = any(node.value in ("asin", "acos") for tree in trees for _, node in walk(tree))

@@ -122,6 +122,8 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
+        if number(0) in (numeric.left, numeric.right):
+            continue  # a multiple of a side that is not zero says less
         for path, piece in pieces(tree):
             for by in factors if numeric.is_matrix(piece) and is_nontrivial(tree) else ():
                 for both in ([by, piece], [piece, by]):

@@ -208,12 +208,20 @@ def _index(point: Point, node: Node) -> Any:
 def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
+        if any(is_matrix(entry) for row in rows for entry in row):
+            return _stacked([entry for (entry,) in rows])
         if len({len(row) for row in rows}) > 1:
             raise UndefinedValue("expected rows of equal length in a matrix, got unequal ones")
         return tuple(map(tuple, rows))
-    if node.value == ("(", ")"):
-        return column(rows)
-    return rows
+    return _stacked(rows) if node.value == ("(", ")") else rows
+
+
+def _stacked(parts: Sequence[Any]) -> Rows:
+    """Return a column of numbers and of the entries of columns: (scalar, vector) is a quaternion."""
+    entries: list[Any] = []
+    for part in parts:
+        entries += [entry for (entry,) in needed(part, (None, 1))] if is_matrix(part) else [part]
+    return column(entries)
 
 
 def _call(point: Point, node: Node) -> Any:
@@ -264,7 +272,7 @@ def _summed(values: Any) -> Any:
 
 
 def _matrix(rows: Any) -> Rows:
-    return column(rows) if isinstance(rows, list) else needed(rows)
+    return _stacked(rows) if isinstance(rows, list) else needed(rows)
 
 
 def _cross(left: Any, right: Any) -> Rows:
@@ -280,8 +288,27 @@ def _hstack(*parts: Any) -> Rows:
 def _product_of_quaternions(*factors: Any) -> Rows:
     total: tuple[Any, ...] = (1.0, 0.0, 0.0, 0.0)
     for factor in factors:
-        total = hamilton(total, [row[0] for row in needed(factor, (4, 1))])
+        total = hamilton(total, _components(factor))
     return column(total)
+
+
+def _components(quaternion: Any) -> list[Any]:
+    """Return the four components of a quaternion; the scalar component of a vector is zero."""
+    entries = [entry for (entry,) in needed(quaternion, (None, 1))]
+    return [0.0, *entries] if len(entries) == 3 else [entry for (entry,) in needed(quaternion, (4, 1))]
+
+
+def _conjugate(quaternion: Any) -> Rows:
+    scalar, *vector = _components(quaternion)
+    return column([scalar, *map(minus, vector)])
+
+
+def _length(value: Any) -> Any:
+    """Return the absolute value of a scalar, or the length of a column."""
+    if not is_matrix(value):
+        return absolute(value)
+    entries = [entry for (entry,) in needed(value, (None, 1))]
+    return square_root(dot(entries, entries))
 
 
 def _other_leg(x: Any) -> Any:
@@ -296,7 +323,7 @@ def _hyperbolic(x: Any) -> tuple[Any, Any]:
 
 _SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": rotation_of_quaternion}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sin": sine, "cos": cosine, "sqrt": square_root, "abs": absolute, "atan2": arctangent, "Matrix": _matrix,
+    "sin": sine, "cos": cosine, "sqrt": square_root, "abs": _length, "atan2": arctangent, "Matrix": _matrix,
     "cross": _cross,
     "exp": exponential, "log": logarithm, "atan": lambda x: arctangent(x, 1.0),
     "asin": lambda x: arctangent(x, _other_leg(x)), "acos": lambda x: arctangent(_other_leg(x), x),
@@ -305,7 +332,8 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "tan": lambda x: sine(x) * inverse(cosine(x)), "cot": lambda x: cosine(x) * inverse(sine(x)),
     "sec": lambda x: inverse(cosine(x)), "csc": lambda x: inverse(sine(x)),
     **{name: rotation("XYZ".index(axis)) for name, axis in ROTATIONS.items()},
-    "hstack": _hstack, "qmul": _product_of_quaternions,
+    "hstack": _hstack, "qmul": _product_of_quaternions, "conjugate": _conjugate,
+    "vector_part": lambda q: column(_components(q)[1:]),
     "vee": lambda rows: column([needed(rows, (3, 3))[2][1], rows[0][2], rows[1][0]]),
     "dot": lambda a, b: dot([row[0] for row in needed(a, (None, 1))], [row[0] for row in needed(b, (None, 1))]),
     "det": lambda rows: determinant(needed(rows)), "inverse": lambda rows: inverted(needed(rows)),

@@ -74,8 +74,13 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def is_star(self) -> bool:
-        """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows."""
-        after = self.token(1)
+        """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows.
+
+        In ``q* q'`` the factor that follows is the same letter, after a blank.
+        """
+        after, before = self.token(1), self.tokens[self.index - 1]
+        if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
+            return True
         ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
         return not self.token().spaced and (
             after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))

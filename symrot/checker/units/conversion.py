@@ -15,8 +15,8 @@ from symrot.checker.units.units import NOTHING, Dimension, raised, read_unit, ti
 from symrot.errors import InputError
 
 __all__ = [
-    "FACTORS", "ONE_PER_SECOND", "STANDARD_GRAVITY", "Measured", "UnitProduct", "measured_text", "numeric_end",
-    "unit_beside_letters",
+    "FACTORS", "ONE_PER_SECOND", "STANDARD_GRAVITY", "Measured", "UnitProduct", "measured_text", "numbers_of_latex",
+    "numeric_end", "unit_beside_letters",
 ]  # fmt: skip
 
 DEGREE = "deg"
@@ -24,6 +24,7 @@ INCH, FOOT, MILE = Fraction("0.0254"), Fraction("0.3048"), Fraction("1609.344")
 POUND, GRAVITY = Fraction("0.45359237"), Fraction("9.80665")
 FACTORS: dict[str, tuple[Fraction, int]] = {
     **dict.fromkeys(("kg", "m", "s", "rad", "sr", "N", "J", "W", "Pa", "Hz", "A", "K"), (Fraction(1), 0)),
+    "percent": (Fraction(1, 100), 0),
     DEGREE: (Fraction(1, 180), 1), "rev": (Fraction(2), 1), "rpm": (Fraction(1, 30), 1),
     "kHz": (Fraction(1000), 0), "MHz": (Fraction(10**6), 0),
     "g": (Fraction(1, 1000), 0), "mg": (Fraction(1, 10**6), 0), "lbm": (POUND, 0), "lb": (POUND, 0),
@@ -54,7 +55,7 @@ ANGULAR = frozenset({"rad", "rev", "rpm", DEGREE})
 """Units next to which a hertz is one rotation per second."""
 
 ALIASES = {
-    "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "Nm": "N m", "μm": "um",
+    "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "%": "percent", "Nm": "N m", "μm": "um",
     "miles": "mile", "knots": "knot",
 }  # fmt: skip
 PRODUCTS = frozenset({"mg", "ms", "hp"})
@@ -83,7 +84,10 @@ _PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT}){_NO_LETTER}(?P<pow
 _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
     (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "), (r"\\(?:cdot|times)\b", "*"),
-    (r"\\approx\b", "="), (r"\\(?:left|right)\b", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi\b", " pi "),
+    (r"\\approx\b", "="), (r"\\%", "%"),
+    (r"\\(theta|phi|psi|alpha|beta|gamma|delta|omega|Omega|Theta|Phi)(?![A-Za-z])", r" \1 "),
+    (r"\\(?:left|right)\b", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi\b", " pi "),
+    (r"\\(sin|cos|tan)\s*\^\{?-1\}?", r" arc\1 "), (r"\\(a?r?c?(?:sin|cos|tan))(?![A-Za-z])", r" \1 "),
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"), (r"\$", ""),
 )  # fmt: skip
 """LaTeX of numbers with units -> the same in plain text."""
@@ -115,11 +119,11 @@ class UnitProduct:
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
-        unit = {"1": "rad", "1/s": "rad/s", "1/s^2": "rad/s^2"}.get(dimension, dimension)
+        unit = {"1": "" if self.text == "%" else "rad", "1/s": "rad/s", "1/s^2": "rad/s^2"}.get(dimension, dimension)
         above, below = self.fraction.as_integer_ratio()
         pi = {0: "", 1: "pi", 2: "pi^2"}.get(self.power_of_pi, f"pi^({self.power_of_pi})")
         factor = pi if pi and above == 1 else f"{above}*{pi}" if pi else f"{above}"
-        return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}"
+        return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}".rstrip()
 
     @property
     def factor(self) -> Node:
@@ -201,6 +205,20 @@ def _plain(source: str) -> str | None:
     return None if "\\" in plain or "{" in plain else plain.replace("−", "-")
 
 
+def numbers_of_latex(source: str) -> str:
+    r"""Return plain text for LaTeX without names, such as ``\pi = 3.14``, in which a decimal number is rounded; or "".
+
+    Examples
+    --------
+    >>> numbers_of_latex(r"\pi = 3.14").split(), numbers_of_latex(r"x = 3.14 \pi")
+    (['pi', '=', '3.14'], '')
+    """
+    plain = _plain(source)
+    if plain is None or not re.search(r"\d\.\d", plain):
+        return ""
+    return plain if {*_OTHER_NAME.findall(plain)} <= {*_FUNCTIONS} else ""
+
+
 def _read(plain: str, way: _Way) -> Measured | None:
     units: dict[str, UnitProduct] = {}
     matches = list(_MEASURED.finditer(plain))
@@ -218,7 +236,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
     text = _MEASURED.sub(named, plain)
     typed = {match["unit"] for one in matches for match in _PIECE.finditer(one[3])}
-    has_long = any((len(name) > 1 or name == "°") and name not in PRODUCTS for name in typed)
+    has_long = any((len(name) > 1 or name in "°%") and name not in PRODUCTS for name in typed)
     if typed == {"°"} and not re.search(rf"(^|=)\s*-?{_NUMBER}\s*°\s*($|=)", plain):
         return None  # an angle in degrees inside of a formula
     names = [name for name in _OTHER_NAME.findall(text) if name not in _FUNCTIONS and name not in units]

@@ -188,7 +188,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number, and return its dimension; ``words`` state a fault."""
+        """Require that a scalar has no unit, and return its dimension; ``words`` are the message if it has one."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)

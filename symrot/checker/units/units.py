@@ -21,7 +21,7 @@ Dimension = Mapping[str, Fraction]
 NOTHING: Dimension = {}
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
 DERIVED = {
-    "": ("rad", "sr", "deg", "rev", "1"),
+    "": ("rad", "sr", "deg", "rev", "percent", "1"),
     "s^-1": ("Hz", "kHz", "MHz", "rpm"),
     "kg m s^-2": ("N", "kN", "MN", "lbf"),
     "kg m^2 s^-2": ("J", "kJ", "MJ", "GJ", "Wh", "kWh"),

@@ -267,7 +267,7 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add the series of functions of one argument whose derivatives contain each other; return the first index.
+        """Append the Taylor series of functions whose derivatives contain each other; return the first index.
 
         Each function is given by its name and the sign of its derivative. ``partners`` holds, for each function, the
         position of the function that its derivative contains: for sine the position of cosine.

@@ -5,7 +5,7 @@ The name of a template is the name of its function. A module is imported when on
 
 from importlib import import_module
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 from symrot.exercises.problem import Template
 
 __all__ = ["TOPICS", "chosen", "template", "topic_of"]
@@ -137,7 +137,8 @@ def chosen(topic: str) -> tuple[str, ...]:
         return TOPICS[topic]
     if any(topic in names for names in TOPICS.values()):
         return (topic,)
-    raise InputError(
+    message = (
         f"exercise: expected a topic, one of {', '.join(TOPICS)}, or a template that `symrot exercise --list` names, "
         f"got {topic!r}"
     )
+    raise InputError(with_hint(message, topic, [*TOPICS, *(name for names in TOPICS.values() for name in names)]))

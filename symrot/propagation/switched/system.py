@@ -76,10 +76,10 @@ class SwitchedSystem:
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether the motion while a guard is held depends on the value of its sign at zero.
+        """Return whether the motion on a switching surface, where the guard stays zero, depends on the value sign(0).
 
-        It does if another function that jumps has its zero at the same place, or if a torque is not linear in the sign.
-        Otherwise it depends only on a mean of the values 1 and -1.
+        It does if another function jumps on the same surface, or if a torque is not linear in the sign. Otherwise a
+        mean of +1 and -1, which keeps the guard at zero, determines the motion.
         """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             return False

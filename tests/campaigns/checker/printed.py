@@ -1,6 +1,6 @@
 """Verdicts of ``symrot check`` on the corpus of printed formulas, against the expected ones.
 
-    python -m tests.campaigns.checker.printed [--workers 2] [--chapter NAME] [--list OUTCOME ..]
+    python -m tests.campaigns.checker.printed [--workers 2] [--chapter NAME] [--list OUTCOME .. misnamed lost]
 
 A formula of the corpus has one of these outcomes; the first two are wrong answers:
 
@@ -10,8 +10,10 @@ refused    the text, or its context in words, cannot be read
 unknown    a correct formula is called a definition or undecided; a faulty one is not called false or doubtful
 right      the verdict is the expected one, or another one that the corpus counts as right
 
-Of the faulty formulas that are called false or doubtful, two shares are printed: those whose diagnosis names the fault
-of the corpus, and those with the original formula among the three repairs, up to a renaming of its letters.
+Two shares are printed, of the faulty formulas that are called false or doubtful and of all faulty formulas: those whose
+diagnosis names the fault of the corpus, and those with the original formula among the three repairs, up to a renaming
+of its letters. ``--list misnamed lost`` prints the faulty formulas with another diagnosis, and those without their
+original among the repairs. A table counts the formulas of each chapter.
 
 The command ends with exit code 1 if there is a wrong answer.
 """
@@ -20,6 +22,7 @@ import argparse
 import sys
 import tomllib
 from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import islice, product
 from pathlib import Path
@@ -36,12 +39,15 @@ from symrot.checker.latex.reader import latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
 from symrot.checker.recognition.relations import primitive
+from symrot.checker.repair.canonical_form import terms_of_equation
 from symrot.errors import SymrotError
 from symrot.exact.decide import decide
 from symrot.exact.decision import flatten
 
 CORPUS = Path(__file__).parent / "corpus"
 OUTCOMES = ("accused", "believed", "refused", "unknown", "right")
+SHORTCOMINGS = ("misnamed", "lost")
+"""A faulty formula whose diagnosis is another one, and one whose original is not among the repairs."""
 GOOD, BAD = ("true", "conditional", "recognised"), ("false", "doubtful")
 
 AGREEING: dict[str, tuple[str, ...]] = {
@@ -110,24 +116,51 @@ def names_fault(fault: str, code: str) -> bool:
     return code != "none" and (fault not in AGREEING or code in AGREEING[fault])
 
 
-def offers(repairs: tuple[str, ...], original: str) -> bool:
-    """Return whether one of the repairs is proven equal to an equation of the original, under a renaming."""
+def offers(
+    repairs: tuple[str, ...], original: str, given: Sequence[str] = (), given_with_original: Sequence[str] = ()
+) -> bool:
+    """Return whether one of the repairs is proven equal to an equation of the original, under a renaming.
+
+    The names that the hypotheses ``given`` define, such as c1 = cos(alpha), are replaced by their formulas, and in the
+    original those of ``given_with_original``.
+    """
     return any(
-        _equal_renamed(mine, other)
+        _same_terms(repair, original)
+        or any(
+            _equal_renamed(mine, other)
+            for mines, others in product(_equations(repair, given), _equations(original, given_with_original))
+            for mine, other in zip(mines, others, strict=True)
+        )
         for repair in repairs
-        for mines, others in product(_equations(repair), _equations(original))
-        for mine, other in zip(mines, others, strict=True)
     )
 
 
-def _equations(source: str) -> list[tuple[list[Expr], list[Expr]]]:
+def _same_terms(repair: str, original: str) -> bool:
+    """Return whether two texts are the same equation, up to the order and the side of its terms."""
+    forms = []
+    for source in (repair, original):
+        try:
+            relations = [claim.relation for line in claims_of_reading(_reading(source), source) for claim in line]
+        except SymrotError:
+            return False
+        forms.append({terms_of_equation(*relation[1:], lambda tree: False) for relation in relations if relation})
+    return bool(forms[0] & forms[1])
+
+
+def _reading(source: str) -> Any:
+    """Return the first reading of a text."""
+    return latex_readings(source)[0] if is_latex(source) else readings_of(source)[0]
+
+
+def _equations(source: str, given: Sequence[str] = ()) -> list[tuple[list[Expr], list[Expr]]]:
     """Return the equations of a text, each as the entries of both sides, and as the primitive difference of the sides.
 
     Only the other side is taken of an equation that gives a matrix a name.
     """
     try:
-        reading = latex_readings(source)[0] if is_latex(source) else readings_of(source)[0]
-        equations = [claim.equation for line in claims_of_reading(reading, source) for claim in line]
+        equations = [
+            claim.expanded.equation for line in claims_of_reading(_reading(source), source, given) for claim in line
+        ]
     except SymrotError:
         return []
     forms = []
@@ -135,6 +168,8 @@ def _equations(source: str) -> list[tuple[list[Expr], list[Expr]]]:
         (left, shape), (right, own_shape) = flatten(equation.left), flatten(equation.right)
         if shape == own_shape:
             forms.append(([*left, *right], [primitive(a - b) for a, b in zip(left, right, strict=True)]))
+            squares = [primitive(a**2 - b**2) for a, b in zip(left, right, strict=True)]
+            forms.append((squares, [primitive(a - b) for a, b in zip(left, right, strict=True)]))
         else:
             named = list(left if own_shape is None else right)
             forms.append((named, named))
@@ -168,17 +203,53 @@ def _share(flags: list[bool]) -> str:
     return f"{sum(flags)} of {len(flags)} ({100 * sum(flags) / max(1, len(flags)):.0f} %)"
 
 
-def _print_diagnoses(entries: list[dict[str, Any]], results: list[Judgement]) -> None:
+class Diagnosed(NamedTuple):
+    """A faulty formula of the corpus: whether its diagnosis names the fault, and whether the original is offered."""
+
+    is_named: bool
+    is_offered: bool
+
+
+def diagnosed(entries: list[dict[str, Any]], results: list[Judgement]) -> dict[str, Diagnosed]:
+    """Return, for the id of each faulty formula, what its diagnosis and its repairs are worth."""
+    originals = {entry["id"]: entry for entry in formulas("")}
+    return {
+        entry["id"]: Diagnosed(
+            result.verdict in BAD and names_fault(entry["fault"], result.code),
+            result.verdict in BAD and _offers_original(result.repairs, entry, originals[entry["original"]]),
+        )
+        for entry, result in zip(entries, results, strict=True)
+        if entry.get("fault")
+    }
+
+
+def _offers_original(repairs: tuple[str, ...], faulty: dict[str, Any], original: dict[str, Any]) -> bool:
+    return offers(repairs, original["text"], faulty.get("given", ()), original.get("given", ()))
+
+
+def _print_diagnoses(entries: list[dict[str, Any]], results: list[Judgement], faulty: dict[str, Diagnosed]) -> None:
     """Print how many diagnoses name the fault, and how many formulas have their original among their repairs."""
-    faulty = [(entry, result) for entry, result in zip(entries, results, strict=True)
-              if entry.get("fault") and result.verdict in BAD]  # fmt: skip
-    originals = {entry["id"]: entry["text"] for entry in formulas("")} if faulty else {}
-    named = [
-        (names_fault(entry["fault"], result.code), offers(result.repairs, originals[entry["original"]]))
-        for entry, result in faulty
-    ]
-    print(f"of the faulty formulas called {' or '.join(BAD)}: diagnosis right in {_share([a for a, _ in named])}, "
-          f"original among the repairs in {_share([b for _, b in named])}")  # fmt: skip
+    called = [entry["id"] for entry, result in zip(entries, results, strict=True)
+              if entry["id"] in faulty and result.verdict in BAD]  # fmt: skip
+    for words, chosen in (
+        (f"of the faulty formulas called {' or '.join(BAD)}", called),
+        ("of all faulty formulas", faulty),
+    ):
+        print(f"{words}: diagnosis right in {_share([faulty[n].is_named for n in chosen])}, "
+              f"original among the repairs in {_share([faulty[n].is_offered for n in chosen])}")  # fmt: skip
+
+
+def _print_chapters(entries: list[dict[str, Any]], results: list[Judgement], faulty: dict[str, Diagnosed]) -> None:
+    """Print, for each chapter, the numbers of correct formulas, of those judged right, and the same of faulty ones."""
+    print(f"{'chapter':17}{'correct':>8}{'right':>7}{'faulty':>8}{'right':>7}{'named':>7}{'offered':>9}")
+    by_chapter: dict[str, list[tuple[str, bool]]] = {}
+    for entry, result in zip(entries, results, strict=True):
+        by_chapter.setdefault(entry["id"].partition(".")[0], []).append((entry["id"], result.outcome == "right"))
+    for chapter, rows in by_chapter.items():
+        good, bad = ([row for row in rows if (row[0] in faulty) == flag] for flag in (False, True))
+        counts = (len(good), sum(r for _, r in good), len(bad), sum(r for _, r in bad),
+                  sum(faulty[n].is_named for n, _ in bad), sum(faulty[n].is_offered for n, _ in bad))  # fmt: skip
+        print(f"{chapter:17}" + "".join(f"{n:{width}}" for n, width in zip(counts, (8, 7, 8, 7, 7, 9), strict=True)))
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -186,7 +257,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--chapter", default="")
-    parser.add_argument("--list", nargs="*", default=["accused", "believed"], choices=OUTCOMES)
+    parser.add_argument("--list", nargs="*", default=["accused", "believed"], choices=(*OUTCOMES, *SHORTCOMINGS))
     options = parser.parse_args(arguments)
     entries = formulas(options.chapter)
     with ProcessPoolExecutor(options.workers) as pool:
@@ -199,13 +270,23 @@ def main(arguments: list[str] | None = None) -> int:
         ]
         counts = Counter(result.outcome for _, result in chosen)
         print(f"{group:8}{len(chosen):5}  " + "  ".join(f"{name} {counts[name]}" for name in OUTCOMES))
-    _print_diagnoses(entries, results)
+    faulty = diagnosed(entries, results)
+    if faulty:
+        _print_diagnoses(entries, results, faulty)
+    _print_chapters(entries, results, faulty)
     times = sorted(result.seconds for result in results)
     print(f"slowest {times[-1]:.1f} s, median {times[len(times) // 2]:.2f} s, all {sum(times):.0f} s")
     for entry, result in zip(entries, results, strict=True):
         if result.outcome in options.list:
             line = f"{result.outcome:9}{result.verdict:12}{entry['id']:34}{entry['text']!r:60}"
             print(f"{line}  {result.sentence[:150]}")
+        if (own := faulty.get(entry["id"])) is not None and result.verdict in BAD:
+            for word, is_right in zip(SHORTCOMINGS, own, strict=True):
+                if word in options.list and not is_right:
+                    repairs = " | ".join(result.repairs)
+                    print(
+                        f"{word:9}{entry['fault']:17}{result.code:20}{entry['id']:38}{entry['text']!r}  ->  {repairs}"
+                    )
     return int(any(result.outcome in ("accused", "believed") for result in results))
 
 

@@ -88,7 +88,6 @@ def test_frames_are_parts_of_names_if_there_are_several():
 
 
 @pytest.mark.parametrize(("claim", "words"), [
-    ("I_1 + I_2 >= I_3", "an inequality is not decided"), (r"\omega_3 \ge \frac{2}{I_3}", "an inequality is not decided"),
     ("[[1, 2], [a × b, 3]] = c", "blocks that fit together"), (r"I = \int \rho\, dV", "or dm for an integral over a body"),
     ("∫ sin(x) dm = 1", "a polynomial in the coordinates"),
 ])  # fmt: skip

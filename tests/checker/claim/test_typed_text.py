@@ -158,8 +158,9 @@ def test_a_chain_is_decided_link_by_link():
 
 def test_a_chain_that_names_a_quantity_may_have_formulas_in_different_letters():
     verdict = symrot.check("I = 1/2 m r² = 1/8 m d²")
-    assert verdict.verdict == "definition"
+    assert verdict.verdict == "recognised"
     assert any("is no identity, since only one side has d" in note for note in verdict.notes)
+    assert any("d is the diameter" in note for note in verdict.notes)
     assert symrot.check("I = 1/2 m r² = 1/3 m r²").verdict == "false"
     assert symrot.check("I = 1/2 m r² = m r²/2").verdict == "recognised"
 

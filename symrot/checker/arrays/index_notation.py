@@ -1,0 +1,181 @@
+"""Index notation with Kronecker's delta and the Levi-Civita symbol, written out for the indices 1, 2 and 3.
+
+An index that occurs twice in a term is summed. An index that occurs once is free: the equation holds for each value of
+it, so both sides become matrices with an entry for each combination of the free indices.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import product as combinations
+
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.errors import InputError
+
+__all__ = ["has_index_symbols", "written_out"]
+
+Relation = tuple[str, Node, Node]
+INDEXED = re.compile(r"([A-Za-z]+)_([i-np-s]{1,4})")
+SYMBOLS = {"delta": 2, "epsilon": 3}
+"""Symbol -> the number of its indices."""
+
+MOST_ENTRIES, WIDTH = 81, 9
+"""The most terms of a sum, and of entries of an equation; the number of entries in a row of its matrix."""
+
+
+def written_out(relation: Relation) -> tuple[Relation, str]:
+    """Return an equation in index notation, written out in components, and a note; any other equation unchanged.
+
+    Raises
+    ------
+    InputError
+        For an index that occurs more than twice in a term, and for terms with different free indices.
+    """
+    sign, left, right = relation
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    if not any(_symbol(node) for node in nodes) or _is_condition(left, right):
+        return relation, ""
+    free = {_free(term) for side in (left, right) for term in _terms(side)}
+    if len(free) > 1:
+        *_, few, many = sorted(("".join(indices) or "none" for indices in free), key=len)
+        raise InputError(f"expected the same free indices in each term, got {few} in one term and {many} in another")
+    (indices,) = free
+    if 3 ** len(indices) > MOST_ENTRIES:
+        raise InputError(f"expected at most 4 free indices, got {len(indices)}: {', '.join(indices)}")
+    values = [dict(zip(indices, choice, strict=True)) for choice in combinations("123", repeat=len(indices))]
+    lefts, rights = ([_component(side, value) for value in values] for side in (left, right))
+    first, second = (entries[0] if not indices else _matrix(entries) for entries in (lefts, rights))
+    take = "takes" if len(indices) == 1 else "take"
+    free_words = f"; {', '.join(indices)} {take} every value" if indices else ""
+    return (sign, first, second), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
+
+
+def has_index_symbols(relation: Relation) -> bool:
+    """Return whether an equation has delta_ij or epsilon_ijk, which :func:`written_out` leaves in conditions only."""
+    return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
+
+
+def _symbol(node: Node) -> str:
+    """Return the indices of delta_ij or epsilon_ijk; an empty text for any other tree."""
+    match = INDEXED.fullmatch(str(node.value)) if node.kind == "name" else None
+    return match[2] if match and SYMBOLS.get(match[1].removeprefix("var")) == len(match[2]) else ""
+
+
+def _indices(node: Node) -> str:
+    match = INDEXED.fullmatch(str(node.value)) if node.kind == "name" else None
+    return match[2] if match else ""
+
+
+def _is_condition(left: Node, right: Node) -> bool:
+    """Return whether an equation gives a formula for a quantity, or restricts quantities: R_ik R_jk = delta_ij.
+
+    An identity has the same quantities on both sides, or zero on one side and a quantity twice on the other.
+    """
+    if any(side.kind == "name" and not _symbol(side) for side in (left, right)):
+        return True
+    own = [Counter(_quantities(side)) for side in (left, right)]
+    for side, other in ((0, 1), (1, 0)):
+        if (left, right)[side] == number(0):
+            return not any(count > 1 for count in own[other].values())
+    return {*own[0]} != {*own[1]}
+
+
+def _quantities(side: Node) -> Iterator[str]:
+    """Yield the letters of a side, without their indices, except delta and epsilon."""
+    for _, node in walk(side):
+        if node.kind == "name" and not _symbol(node) and node.value != "pi":
+            yield str(node.value).rpartition("_")[0] if _indices(node) else str(node.value)
+
+
+def _terms(side: Node) -> Iterator[Node]:
+    """Yield the terms of a side; products of sums are multiplied out."""
+    if side.kind in ("sum", "neg"):
+        for part in side.args:
+            yield from _terms(part)
+    elif side.kind == "product" and any(factor.kind == "sum" for factor in side.args):
+        place = next(n for n, factor in enumerate(side.args) if factor.kind == "sum")
+        for term in side.args[place].args:
+            yield from _terms(_flat([*side.args[:place], term, *side.args[place + 1 :]]))
+    elif side != number(0):
+        yield side
+
+
+def _flat(factors: Sequence[Node]) -> Node:
+    bare = [factor.args[0] if factor.kind == "neg" else factor for factor in factors]
+    return product([part for factor in bare for part in (factor.args if factor.kind == "product" else (factor,))])
+
+
+def _counts(term: Node) -> Counter[str]:
+    """Return how often each index occurs in a term; in a square each occurs twice as often."""
+    counts: Counter[str] = Counter(_indices(term))
+    for part in term.args:
+        own = _counts(part)
+        is_square = term.kind == "power" and part is term.args[0] and term.args[1] == number(2)
+        counts.update(own + own if is_square else own)
+    return counts
+
+
+def _free(term: Node) -> tuple[str, ...]:
+    """Return the indices that occur once in a term, in order."""
+    counts = _counts(term)
+    often = [index for index, count in counts.items() if count > 2]
+    if often:
+        raise InputError(f"expected every index at most twice in a term, got {often[0]} {counts[often[0]]} times")
+    return tuple(sorted(index for index, count in counts.items() if count == 1))
+
+
+def _component(side: Node, values: Mapping[str, str]) -> Node:
+    """Return a side with values for its free indices, and with its sums written out."""
+    if side.kind == "sum":
+        return sum_of([_component(part, values) for part in side.args])
+    if side.kind == "neg":
+        return negated(_component(side.args[0], values))
+    if side.kind == "product" and any(factor.kind == "sum" for factor in side.args):
+        place = next(n for n, factor in enumerate(side.args) if factor.kind == "sum")
+        before, after = side.args[:place], side.args[place + 1 :]
+        parts = []
+        for term in side.args[place].args:
+            whole = _component(_flat([*before, term, *after]), values)
+            parts.append(negated(whole) if term.kind == "neg" else whole)
+        return sum_of(parts)
+    summed = sorted(index for index, count in _counts(side).items() if count == 2 and index not in values)
+    if 3 ** len(summed) > MOST_ENTRIES:
+        raise InputError(f"expected at most 4 summed indices in a term, got {len(summed)}: {', '.join(summed)}")
+    terms = [
+        _with_values(side, {**values, **dict(zip(summed, choice, strict=True))})
+        for choice in combinations("123", repeat=len(summed))
+    ]
+    present = [term for term in terms if term != number(0)]
+    return sum_of(present) if present else number(0)
+
+
+def _with_values(term: Node, values: Mapping[str, str]) -> Node:
+    """Return a term with numbers in place of its indices; zero if a factor is zero."""
+    if indices := _indices(term):
+        digits = "".join(values[index] for index in indices)
+        if _symbol(term):
+            return number(_delta(digits) if len(digits) == 2 else _epsilon(digits))
+        return replace(term, value=f"{str(term.value).rpartition('_')[0]}_{digits}")
+    args = tuple(_with_values(part, values) for part in term.args)
+    if term.kind == "product" and number(0) in args:
+        return number(0)
+    return replace(term, args=args)
+
+
+def _delta(digits: str) -> int:
+    return int(digits[0] == digits[1])
+
+
+def _epsilon(digits: str) -> int:
+    i, j, k = map(int, digits)
+    return (j - i) * (k - j) * (k - i) // 2
+
+
+def _matrix(entries: Sequence[Node]) -> Node:
+    rows = [entries[n : n + WIDTH] for n in range(0, len(entries), WIDTH)]
+    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
+
+
+def _list(members: Sequence[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))

@@ -1,0 +1,68 @@
+"""The matrix of a rotation that a text writes with a quaternion, as R in ``q v q* = R v``.
+
+The equation is meant for every vector v, so it gives the matrix R of the linear map on its other side.
+"""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from symrot.checker.claim.tree import Node, number, walk
+
+__all__ = ["as_matrix_of_map"]
+
+Relation = tuple[str, Node, Node]
+
+
+def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collection[str]) -> tuple[Relation, str]:
+    """Return the equation R = (matrix of the map) for ``R v = f(v)``, and a note; other equations are unchanged.
+
+    Parameters
+    ----------
+    relation : Relation
+        The equation, in which f is a product of quaternions.
+    vectors : collection of str
+        The names of vectors.
+    known : collection of str
+        The names that the claim defines; R is not one of them.
+    """
+    sign, left, right = relation
+    for side, image in ((left, right), (right, left)):
+        factors = side.args if side.kind == "product" else ()
+        if len(factors) != 2 or factors[1].kind != "name" or factors[1].value not in vectors:
+            continue
+        matrix, vector = factors
+        name = matrix.args[0] if matrix.kind == "transpose" else matrix
+        is_matrix = name.kind == "name" and str(name.value)[0].isupper() and name.value not in known
+        if not is_matrix or not _is_image(image, vector) or name in [node for _, node in walk(image)]:
+            continue
+        rows = _matrix_of(image, vector)
+        written = f"{name.value}^T" if matrix.kind == "transpose" else str(name.value)
+        rows = Node("transpose", None, (rows,)) if matrix.kind == "transpose" else rows
+        note = f"{written} is the matrix of the map of every vector {vector.value}"
+        return ((sign, name, rows) if side is left else (sign, rows, name)), note
+    return relation, ""
+
+
+def _is_image(image: Node, vector: Node) -> bool:
+    """Return whether a formula is linear in a vector: the vector part of one product of quaternions that has it."""
+    nodes = [node for _, node in walk(image)]
+    return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1
+
+
+def _matrix_of(image: Node, vector: Node) -> Node:
+    """Return the matrix of a linear map, whose columns are the images of the unit vectors."""
+    columns = [_with(image, vector, _column(place)) for place in range(3)]
+    rows = [[Node("index", None, (column, number(row), number(0))) for column in columns] for row in range(3)]
+    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
+
+
+def _with(tree: Node, name: Node, value: Node) -> Node:
+    return value if tree == name else replace(tree, args=tuple(_with(child, name, value) for child in tree.args))
+
+
+def _column(place: int) -> Node:
+    return Node("call", "Matrix", (_list([number(int(place == n)) for n in range(3)]),))
+
+
+def _list(members: list[Node]) -> Node:
+    return Node("list", ("[", "]"), tuple(members))

@@ -1,0 +1,85 @@
+"""Claims that mix rates of Euler angles with components of the angular velocity: ``psi' = omega_3 - phi' cos theta``.
+
+Each follows from ``omega = B(q) dq/dt`` or contradicts it, whatever it is solved for: the components are replaced by
+their formulas in the angles and rates, which are independent, and the rest must be an identity.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+from sympy import Expr, Matrix, Symbol
+
+from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.context.admission import plain
+from symrot.checker.context.angle_orders import letter_of_angle, orders
+from symrot.checker.context.context import Context
+from symrot.checker.context.substitution import Substitution
+from symrot.conventions import SEQUENCES
+from symrot.exact.printing import as_text
+from symrot.kinematics.euler import rate_jacobian
+
+__all__ = ["substitutions_of_rates"]
+
+FRAMES = ("body", "space")
+COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
+"""A component of the angular velocity; its groups are the index and the letter of an aircraft's rate."""
+
+AXES = {letter: axis for axis, letters in enumerate(("1xp", "2yq", "3zr")) for letter in letters}
+USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
+
+
+def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the ways of reading a claim as one about the rates of a sequence and the angular velocity.
+
+    There is none if the claim has another letter, no rate, or no component.
+    """
+    names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
+    components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
+    others = {atom: name for atom, name in names.items() if atom not in components}
+    rates = {atom: name[1:] for atom, name in others.items() if name[:1] == "d" and letter_of_angle(name[1:])}
+    angles = {atom: name for atom, name in others.items() if atom not in rates}
+    letters = list(dict.fromkeys([*rates.values(), *angles.values()]))
+    if not components or not rates or not all(map(letter_of_angle, letters)):
+        return
+    frames = _frames(context, names, components)
+    rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
+    for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
+        for order in orders(context, letters, sequence):
+            q, dq = _coordinates(order.places)
+            omega = Matrix(rate_jacobian(sequence, frame, q)) * Matrix(dq)
+            values = {atom: q[order.places[name]] for atom, name in angles.items()}
+            values |= {atom: dq[order.places[name]] for atom, name in rates.items()}
+            values |= {atom: omega[AXES[match[1] or match[2]]] for atom, match in components.items()}
+            open_words = [] if context.sequence else [sequence]
+            open_words += [] if len(frames) == 1 else [f"in the {frame} frame"]
+            guess = ", ".join(filter(None, [" ".join(open_words), order.guess]))
+            name = f"angular velocity of {sequence} in the {frame} frame, by the rates of the angles"
+            source = f'symrot.rate_jacobian("{sequence}", "{frame}")'
+            yield Substitution(name, source, values, guess)
+
+
+TIME = Symbol("t", real=True)
+
+
+def _plain(atom: Expr) -> str:
+    """Return the name of an atom; the rate of an angle has a ``d`` in front."""
+    name = plain(as_text(atom))
+    return f"d{name.removesuffix('_dot')}" if name.endswith("_dot") else name
+
+
+def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
+    """Return the frames in which the components of a claim may be: the stated one, or both."""
+    stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
+    stated |= {context.frame} if context.frame else set()
+    if not stated and any(match[2] for match in components.values()):
+        return ("body",)  # p, q and r are rates about the axes of an aircraft
+    return FRAMES if not stated else tuple(sorted(stated))
+
+
+def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
+    """Return symbols for the three angles and their rates, with the names of the claim's angles where it has them."""
+    names = {place: name for name, place in places.items()}
+    unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)
+    letters = [names.get(place) or next(unused) for place in range(3)]
+    return [Symbol(name, real=True) for name in letters], [Symbol(f"d{name}", real=True) for name in letters]

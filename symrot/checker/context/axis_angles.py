@@ -1,0 +1,61 @@
+"""Claims about a free symmetric body: its axis, its angular momentum and its angular velocity lie in one plane.
+
+The tangents of the angles between them have the ratio of the moments; claims may be solved for either angle, and books
+use the same letters for both.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import permutations
+
+from sympy import Expr, atan, cancel, cos, diag, sin, tan
+
+from symrot import symbols
+from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.context.admission import plain
+from symrot.checker.context.context import Context
+from symrot.checker.context.substitution import Substitution
+from symrot.checker.context.tops import MOMENT_LETTERS
+from symrot.exact.printing import as_text
+
+__all__ = ["is_stated", "substitutions_of_axis_angles"]
+
+ANGLES = re.compile("theta|vartheta|gamma|alpha|beta|lambda|delta|chi|theta_?[1-3]|theta_?[bsHL]")
+A, C, THETA = symbols.A, symbols.C, symbols.theta
+OF_MOMENTUM, OF_VELOCITY = "angle of the axis", "angle between the axis and the angular velocity"
+NAME = "relation for the angles of momentum and angular velocity to the axis of a free symmetric body"
+
+
+def is_stated(context: Context) -> bool:
+    """Return whether words say which of two angles is that of the angular velocity."""
+    return any(meaning.quantity.title in (OF_MOMENTUM, OF_VELOCITY) for meaning in context.meanings)
+
+
+def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the ways of reading a claim as one about the two angles; none if it has other letters than these."""
+    if context.body is not None and "free symmetric" not in context.body.kind.title:
+        return
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
+    angles = [atom for atom, name in names.items() if ANGLES.fullmatch(name)]
+    moments = [atom for atom in names if atom not in angles]
+    if len(angles) != 2 or len(moments) != 2 or not {side.func for side in sides} & {tan}:
+        return
+    velocity = (symbols.omega_1, symbols.omega_3)
+    momentum = diag(A, C) * diag(*velocity)
+    # the angle of a vector to the axis has its components across and along the axis as sine and cosine
+    ratio = cancel((velocity[0] / velocity[1]) / (momentum[0, 0] / momentum[1, 1]))
+    value = atan(ratio * sin(THETA) / cos(THETA))
+    for (first, second), (across, along) in ((a, m) for a in permutations(angles) for m in permutations(moments)):
+        own = ((first, OF_MOMENTUM), (second, OF_VELOCITY))
+        meanings = [(context.meaning_of(names[atom]), title) for atom, title in own]
+        if any(meaning is not None and meaning.quantity.title != title for meaning, title in meanings):
+            continue
+        if not (re.fullmatch(MOMENT_LETTERS[A], names[across]) and re.fullmatch(MOMENT_LETTERS[C], names[along])):
+            continue
+        values = {first: THETA, second: value, across: A, along: C}
+        usual = names[first].startswith(("theta", "vartheta"))
+        guess = f"{names[first]} is the angle of the angular momentum, {names[second]} that of the angular velocity"
+        is_open = not is_stated(context) and not usual
+        mapping = {"theta": names[first], "gamma": names[second], "A": names[across], "C": names[along]}
+        mapping = {old: new for old, new in mapping.items() if old != new}
+        yield Substitution(NAME, "derivations/symmetric_top.md", values, guess * is_open, mapping=mapping)

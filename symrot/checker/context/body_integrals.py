@@ -1,0 +1,84 @@
+"""Claims that give moments and products of inertia as integrals over a body: ``I_xy = integral of x y dm``.
+
+The integrals of products of coordinates are independent; each entry of the inertia tensor is a sum of them. A product
+of inertia is defined with or without the minus sign, and words may say which.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from sympy import Add, Expr, Poly, Symbol
+
+from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.context.admission import plain
+from symrot.checker.context.context import Context
+from symrot.checker.context.substitution import Substitution
+from symrot.exact.printing import as_text
+from symrot.inertia.tensor import inertia_of_point
+from symrot.symbols import position
+
+__all__ = ["substitutions_of_gyration", "substitutions_of_integrals"]
+
+INTEGRAL = re.compile(r"integral_[xyz]{2}")
+ENTRY = re.compile(r"[IJP]_?([xyz1-3])([xyz1-3])?")
+"""A moment or a product of inertia; its groups are the axes."""
+
+AXES = {letter: axis for axis, letters in enumerate(("x1", "y2", "z3")) for letter in letters}
+SIGNS = {"minus": 1, "plus": -1}
+
+
+def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the ways of reading a claim as one about entries of the inertia tensor and integrals over the body.
+
+    There is none if the claim has another letter. Products of inertia have the minus sign in the first way, and none in
+    the second, unless words say which sign they have.
+    """
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
+    entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
+    if not entries or not any(map(INTEGRAL.fullmatch, names.values())):
+        return
+    if not all(atom in entries or INTEGRAL.fullmatch(name) for atom, name in names.items()):
+        return
+    places = {atom: (AXES[match[1]], AXES[match[2] or match[1]]) for atom, match in entries.items()}
+    has_products = any(i != j for i, j in places.values())
+    for sign in [context.sign_of_products] if context.sign_of_products else [*SIGNS] if has_products else ["minus"]:
+        values = {atom: (1 if i == j else SIGNS[sign]) * _entry(i, j) for atom, (i, j) in places.items()}
+        words = f", products of inertia with{'out' * (sign == 'plus')} the minus sign" if has_products else ""
+        guess = "products of inertia without the minus sign" * (sign == "plus" and not context.sign_of_products)
+        name = f"inertia tensor as an integral over the body{words}"
+        yield Substitution(name, "symrot.inertia.tensor.inertia_of_point", values, guess)
+
+
+def _entry(row: int, column: int) -> Expr:
+    """Return an entry of the inertia tensor with a symbol for the integral of each product of two coordinates."""
+    terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
+    return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
+
+
+def _product(powers: Sequence[int]) -> str:
+    """Return the coordinates of a product, each as often as its power: "xx" for x^2."""
+    return "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True))
+
+
+MOMENT_OF_AXIS, MASS, GYRATION = (
+    re.compile(pattern) for pattern in (r"[IJ](_?\w+)?", "m|M", r"k(_?\w)?|r_?g|i|kappa|R_?g|rho")
+)
+
+
+def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the reading of a claim as the definition of the radius of gyration; none if it has another letter."""
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
+    patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
+    if len(names) != len(patterns):
+        return
+    atoms_by_kind = [[atom for atom, name in names.items() if pattern.fullmatch(name)] for pattern in patterns]
+    meanings = {atom: context.meaning_of(name) for atom, name in names.items()}
+    radius_by_words = [
+        atom for atom, meaning in meanings.items() if meaning and meaning.quantity.title == "radius of gyration"
+    ]
+    atoms_by_kind[2] = radius_by_words or atoms_by_kind[2]
+    if [len(atoms) for atoms in atoms_by_kind] != [1, 1, 1]:
+        return
+    ((moment,), (mass,), (radius,)) = atoms_by_kind
+    value = inertia_of_point(mass, (radius, 0, 0))[2][2]
+    yield Substitution("moment of inertia from the radius of gyration", "derivations/parallel_axis.md", {moment: value})

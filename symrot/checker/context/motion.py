@@ -1,0 +1,41 @@
+"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations of each subject."""
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.context.angle_rates import substitutions_of_rates
+from symrot.checker.context.axis_angles import is_stated, substitutions_of_axis_angles
+from symrot.checker.context.body_integrals import substitutions_of_gyration, substitutions_of_integrals
+from symrot.checker.context.substitution import by_substitution
+from symrot.checker.context.tops import substitutions_of_tops
+from symrot.checker.verdict import Verdict
+
+__all__ = ["by_motion"]
+
+
+def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a claim by the relations between rates, components, momenta and energies.
+
+    It is ``verdict`` if these relations do not decide the claim.
+    """
+    equation, context = claim.equation, claim.context
+    sides = equation.left, equation.right
+    if any(map(is_matrix, sides)):
+        return verdict
+    is_used = not context.rest  # with words that nothing uses, a claim is called neither true nor false
+    of_gyration = is_used and any(meaning.quantity.title == "radius of gyration" for meaning in context.meanings)
+    of_momentum = is_used and is_stated(context) and context.body is not None
+    for ways, is_complete in (
+        (substitutions_of_integrals(context, sides), is_used and bool(context.meanings)),
+        (substitutions_of_gyration(context, sides), of_gyration and context.body is None),
+        (substitutions_of_axis_angles(context, sides), of_momentum),
+    ):
+        decided = by_substitution(claim, verdict, ways, is_complete)
+        if decided is not verdict:
+            return decided
+    has_frame = is_used and bool(context.frame or any(meaning.frame for meaning in context.meanings))
+    verdict = by_substitution(
+        claim, verdict, substitutions_of_rates(context, sides), bool(context.sequence) and has_frame
+    )
+    if context.sequence not in ("", "ZXZ") or verdict.verdict in ("true", "recognised"):
+        return verdict
+    return by_substitution(claim, verdict, substitutions_of_tops(context, sides), is_complete=False)

@@ -1,0 +1,74 @@
+"""Claims whose words define products of inertia without the minus sign, judged with the sign that symrot uses.
+
+``I_xy`` without the minus sign is ``-I_xy`` with it, so that the claim with the signs of all products changed says the
+same in the convention of symrot.
+"""
+
+from dataclasses import replace
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.tree import Node, negated, text
+from symrot.checker.context.quantities import QUANTITIES
+from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
+from symrot.checker.verdict import Repair, Verdict
+from symrot.errors import InputError
+
+__all__ = ["in_claim", "with_minus_sign"]
+
+NOTE = "products of inertia are those without the minus sign, I_xy = integral of x*y dm"
+WITH_MINUS = next(quantity for quantity in QUANTITIES if quantity.sign == "minus")
+
+
+def with_minus_sign(claim: Claim) -> Claim:
+    """Return the claim that says the same about products of inertia with the minus sign."""
+    if claim.relation is None:
+        return claim
+    meanings = tuple(
+        replace(meaning, quantity=WITH_MINUS) if meaning.quantity.sign else meaning
+        for meaning in claim.context.meanings
+    )
+    context = replace(claim.context, meanings=meanings)
+    return replace(claim.with_relation(_changed(claim.relation), alternatives=()), context=context)
+
+
+def in_claim(verdict: Verdict) -> Verdict:
+    """Turn a verdict on the claim with changed signs into one on the claim itself; a note says so."""
+    repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
+    return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
+
+
+def _restored(repair: Repair) -> Repair | None:
+    try:
+        sign, left, right = _changed(read_relation(repair.text))
+    except InputError:
+        return None
+    return replace(repair, text=f"{text(left)} {sign} {text(right)}")
+
+
+def _changed(relation: tuple[str, Node, Node]) -> tuple[str, Node, Node]:
+    """Return an equation with the other sign of each product of inertia, solved for the same quantity."""
+    sign, *sides = relation
+    left, right = (_with_other_sign(side) for side in sides)
+    if any(map(_is_product, sides)):
+        left, right = _negative(left), _negative(right)
+    return sign, left, right
+
+
+def _negative(tree: Node) -> Node:
+    return tree.args[0] if tree.kind == "neg" else negated(tree)
+
+
+def _is_product(tree: Node) -> bool:
+    """Return whether a tree is a product of inertia, by its name, as a function of time, or the rate of one."""
+    if tree.kind == "call" and tree.value == "diff":
+        return _is_product(tree.args[0])
+    is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]
+    stem = str(tree.value).removesuffix("_prime").removesuffix("_bar")
+    return (tree.kind == "name" or is_function) and PRODUCT_OF_INERTIA.fullmatch(stem) is not None
+
+
+def _with_other_sign(tree: Node) -> Node:
+    if _is_product(tree):
+        return negated(tree)
+    return replace(tree, args=tuple(map(_with_other_sign, tree.args)))

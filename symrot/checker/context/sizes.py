@@ -1,0 +1,79 @@
+"""Moments of inertia whose letters are half the sides of a box, the axes of an ellipsoid, or a diameter.
+
+symrot writes the moments of a box with its sides, those of an ellipsoid with its semi-axes, those of round bodies with
+their radii. Authors also use the other letters; a formula that is exact for these is recognised, and the note says so.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.recognition.naming import MOMENT
+from symrot.checker.verdict import Verdict
+
+__all__ = ["by_other_sizes"]
+
+
+@dataclass(frozen=True)
+class Size:
+    """Letters with which authors write the moments of some bodies.
+
+    ``factor`` is the dimension of symrot in units of the letter, ``letters`` gives its letter in symrot for each.
+    """
+
+    letters: dict[str, str]
+    factor: Fraction
+    bodies: tuple[str, ...]
+    note: str
+
+
+SIZES = (
+    Size({"a": "a", "b": "b", "c": "c"}, Fraction(2), (" box ", " plate "), "a, b and c are half the sides"),
+    Size({"a": "a", "b": "b", "c": "c"}, Fraction(1, 2), (" ellipsoid ",), "a, b and c are the whole axes"),
+    Size({"d": "R"}, Fraction(1, 2), (" cylinder ", " disk ", " sphere ", " ring ", " spherical shell "),
+         "d is the diameter"),
+    Size({"D": "R"}, Fraction(1, 2), (" cylinder ", " disk ", " sphere ", " ring ", " spherical shell "),
+         "D is the diameter"),
+)  # fmt: skip
+
+TRIED = ("definition", "doubtful", "false")
+Judge = Callable[[Claim, NamedFormula], Verdict]
+
+
+def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
+    """Return the verdict "recognised" on a moment of inertia that is exact with other dimensions, or ``verdict``.
+
+    Nothing is tried if the words about the body say what its letters are.
+    """
+    body = claim.context.body
+    if verdict.verdict not in TRIED or not MOMENT.fullmatch(named.name) or (body is not None and body.letters):
+        return verdict
+    own: set[Any] = {node.value for _, node in walk(named.formula) if node.kind == "name"}
+    for size in SIZES:
+        clash = ({*size.letters.values()} - {*size.letters}) & own
+        if (
+            clash
+            or not own & {*size.letters}
+            or (body is not None and f" {body.kind.shape.replace('_', ' ')} " not in size.bodies)
+        ):
+            continue
+        formula = _in_dimensions(named.formula, size)
+        other = judge(
+            claim.with_relation(("==", named.side, formula), alternatives=()), named._replace(formula=formula)
+        )
+        known = [k for k in other.recognised_as if any(title in k.name for title in size.bodies) and not k.how]
+        if other.verdict in ("true", "recognised") and known:
+            note = f"guessed, not stated: {size.note}"
+            return Verdict("recognised", recognised_as=tuple(known), notes=(*other.notes, note))
+    return verdict
+
+
+def _in_dimensions(tree: Node, size: Size) -> Node:
+    """Return a formula in which the dimensions that symrot uses, such as the radius, replace those of the author."""
+    if tree.kind == "name" and tree.value in size.letters:
+        return product([number(1 / size.factor), Node("name", size.letters[str(tree.value)])])
+    return replace(tree, args=tuple(_in_dimensions(child, size) for child in tree.args))

@@ -1,0 +1,110 @@
+"""Claims decided by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
+
+Whatever a claim is solved for, it is true on the relations that these formulas state if and only if the rest is an
+identity.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
+
+from sympy import Expr
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.context.context import Context
+from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.verdict import Diagnosis, Identification, Verdict
+from symrot.errors import InputError
+from symrot.exact.decision import Decision
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["Substitution", "by_substitution", "decided"]
+
+MOST_SUBSTITUTIONS = 200
+MOST_READINGS = 4
+OPEN = ("definition", "doubtful", "false", "undecided")
+"""Verdicts that a true reading overrules."""
+GUESSED = "guessed, not stated"
+
+
+@dataclass(frozen=True)
+class Substitution:
+    """One way of reading the letters of a claim.
+
+    Attributes
+    ----------
+    name, source : str
+        The relation, and where symrot derives it.
+    values : dict
+        Atom of the claim -> its formula in the coordinates of the motion.
+    guess : str
+        What nothing states; empty if everything is stated.
+    sides : tuple (Expr, Expr) or None
+        An equation that takes the place of the claim's; None for the claim's own.
+    mapping : dict
+        Symbol of the relation -> letter of the claim, where they differ.
+    """
+
+    name: str
+    source: str
+    values: dict[Expr, Expr]
+    guess: str = ""
+    sides: tuple[Expr, Expr] | None = None
+    mapping: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def identification(self) -> Identification:
+        """The relation as an entry of ``recognised_as`` in a verdict."""
+        return Identification(self.name, "", self.mapping, self.source)
+
+
+def decided(equation: Equation, substitution: Substitution) -> Decision | None:
+    """Return the decision on an equation after a substitution; None if it cannot be decided."""
+    values = substitution.values
+
+    def put(formula: Any) -> Any:
+        return formula.xreplace(values)
+
+    left, right = substitution.sides or (equation.left, equation.right)
+    try:
+        return decide_equation(Equation(put(left), put(right)))
+    except (InputError, TooLarge):
+        return None
+
+
+def by_substitution(
+    claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
+) -> Verdict:
+    """Return the verdict on a claim by the ways of reading it, or ``verdict`` if these say nothing new.
+
+    The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that it leaves no
+    other way, the claim is false if it is false in all of them.
+    """
+    equation = claim.equation
+    decisions = [(way, decided(equation, way)) for way in islice(substitutions, MOST_SUBSTITUTIONS)]
+    true = [way for way, decision in decisions if decision is not None and decision.verdict == "true"]
+    is_stated = is_complete and any(not way.guess for way in true)
+    if true and (verdict.verdict in OPEN or (is_stated and verdict.verdict == "recognised")):
+        return _recognised(claim.context, verdict, true, is_complete)
+    false = [(way, decision) for way, decision in decisions if decision is not None and decision.verdict == "false"]
+    if not is_complete or not decisions or len(false) < len(decisions) or verdict.verdict in ("false", "refused"):
+        return verdict
+    (way, decision), *_ = false
+    reason = f"it contradicts the {way.name}"
+    repairs = verdict.repairs if verdict.verdict == "doubtful" else ()
+    diagnosis = verdict.diagnosis if repairs else Diagnosis("context", reason)
+    return Verdict("false", counterexample=decision.counterexample, diagnosis=diagnosis, repairs=repairs,
+                   recognised_as=(way.identification,), notes=verdict.notes)  # fmt: skip
+
+
+def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
+    """Return the verdict "true" if everything is stated, otherwise "recognised" with a note on what is guessed."""
+    stated = [way for way in true if not way.guess]
+    readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])
+    if stated and context and is_complete:
+        notes = tuple(note for note in verdict.notes if not note.startswith(GUESSED))
+        return Verdict("true", recognised_as=readings, notes=notes)
+    guess = true[0].guess if not stated else ""
+    notes = (*verdict.notes, f"{GUESSED}: {guess}") if guess else verdict.notes
+    return Verdict("recognised", recognised_as=readings, notes=notes)

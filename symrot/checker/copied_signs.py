@@ -1,0 +1,50 @@
+"""Signs of a copied text with one plain meaning: thousands, ≈ before a rounded value, braces as brackets, "where"."""
+
+import re
+
+__all__ = ["with_plain_signs"]
+
+_THOUSANDS = re.compile(r"(?<![\w.,(\[])\d{1,3}(?:,\d{3})+(?![\d,])(?![^()\[\]]*[)\]])")
+"""A number such as 1,500 outside of brackets, in which a comma separates arguments."""
+
+_ROUNDED = re.compile(r"(?:≈|\\approx\b)(?=\s*[-−]?\s*\d+(?:\.\d+|\s*(?:°|\^\{?\\circ|[a-zA-Z\\])))")
+"""A sign before a decimal number or a number with a unit, which is a rounded value."""
+
+_FUNCTION = re.compile(r"(?<![A-Za-z\\_])(?:sin|cos|tan|sinh|cosh|tanh|sqrt|exp|ln|log|asin|acos|atan)(?![A-Za-z])")
+_WHERE = re.compile(
+    r"[,;.]?\s*(?:\\(?:text|mathrm|textrm)\{\s*where:?\s*\}|(?<![A-Za-z\\])where\b:?)(?:\\[,;: ]|\\q?quad)*"
+)
+_BETWEEN = re.compile(r"\s(?:\\(?:text|mathrm|textrm)\{\s*and\s*\}|and)\s")
+_SUBSCRIPT = re.compile(r"_\{(\w+)\}")
+
+
+def with_plain_signs(source: str) -> str:
+    r"""Return a text in which signs that have one plain meaning are written in the usual way.
+
+    Examples
+    --------
+    >>> with_plain_signs("1,500 rpm = 157.08 rad/s"), with_plain_signs("sqrt(2) ≈ 1.41")
+    ('1500 rpm = 157.08 rad/s', 'sqrt(2) = 1.41')
+    >>> with_plain_signs("e^{i x} = cos x + i sin x")
+    'e^(i x) = cos x + i sin x'
+    >>> with_plain_signs(r"\bar z z = x^2 + y^2 where z = x + i y")
+    'z = x + i y, \\bar z z = x^2 + y^2'
+    """
+    text = _THOUSANDS.sub(lambda match: match[0].replace(",", ""), source)
+    text = _ROUNDED.sub("=", text)
+    if "\\" not in text and "$" not in text and "{" in text and _FUNCTION.search(text):
+        text = _SUBSCRIPT.sub(r"_\1", text).replace("{", "(").replace("}", ")")
+    return _with_definitions_first(text) if "\\" in text or "{" in text else text
+
+
+def _with_definitions_first(text: str) -> str:
+    """Return LaTeX in which definitions after the word "where" come before the formula that uses them."""
+    match = _WHERE.search(text)
+    if match is None or "=" not in text[: match.start()] or "\\begin" in text:
+        return text
+    clauses = _BETWEEN.sub(", ", text[match.end() :]).strip(" $.")
+    formula = text[: match.start()].strip(" $")
+    parts = re.split(r",(?![^{(]*[})])", clauses)
+    if not all("=" in part for part in parts):
+        return rf"{formula} \text{{where}} {clauses}" if "=" not in clauses else text
+    return f"{clauses}, {formula}"

@@ -1,0 +1,174 @@
+"""Verdicts on inequalities such as ``x^2 + 1 > 0``, and on the inequalities between moments of inertia.
+
+An inequality is true if its difference is proven to have one sign, and false at an exact point where it has the other.
+One that only restricts the values of a letter, such as ``omega > 2``, is a condition, about which nothing is claimed.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import islice, product
+from typing import Any
+
+from sympy import Expr, Rational, Symbol, pi
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim_verdict import verdict_of_decision
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.signs import is_proven_nonnegative, is_proven_positive
+from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
+from symrot.errors import InputError
+from symrot.exact.evidence import Counterexample
+from symrot.exact.intervals import enclosure
+
+__all__ = ["OPPOSITE", "is_inequality", "verdict_on_inequality"]
+
+OPPOSITE = {">": "<", ">=": "<=", "<": ">", "<=": ">="}
+"""Sign of an inequality -> the sign in the other direction."""
+
+MOST_POINTS = 4000
+"""The most points at which a counterexample is looked for."""
+
+VALUES = (*map(Rational, ("0", "1", "-1", "1/2", "2", "-2", "3", "-1/3", "10", "-10", "1/10")), pi / 2, -pi / 2, pi)
+MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.format(2)}", f"{letter}{index.format(3)}")
+           for letter in "IJ" for index in ("_{0}", "{0}", "_{0}{0}", "{0}{0}")),
+           *((f"{letter}{mark}{'x' * n}", f"{letter}{mark}{'y' * n}", f"{letter}{mark}{'z' * n}")
+           for letter in "IJ" for mark in ("_", "") for n in (1, 2)))  # fmt: skip
+"""Names of the three moments of inertia about perpendicular axes."""
+
+CONDITION = (
+    "it is a condition on its letters, which may hold for some of their values only: nothing is claimed about it"
+)
+
+PLATE = "the body is not a plane plate"
+
+
+def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
+    """Return the verdict on the inequality between the two sides of a claim.
+
+    Parameters
+    ----------
+    claim : Claim
+        The equation of the same two sides, with which the claim was read.
+    sign : str
+        The sign of the inequality.
+    flipped : str
+        The text of the inequality with the opposite sign, for a repair.
+
+    Raises
+    ------
+    InputError
+        For sides that are not real numbers.
+    """
+    assert claim.relation is not None
+    equation = claim.equation
+    for side in (equation.left, equation.right):
+        if is_matrix(side) or not isinstance(side, Expr) or claim.has_parts:
+            raise InputError(f"expected real numbers on both sides of {sign}, not vectors, matrices or complex numbers")
+    left, right = (equation.left, equation.right) if sign.startswith(">") else (equation.right, equation.left)
+    difference, strict = left - right, sign in (">", "<")
+    if (verdict := _on_moments(difference, strict, flipped)) is not None:
+        return verdict
+    domain = decide_equation(replace(equation, right=equation.left))
+    if domain.verdict not in ("true", "conditional"):
+        return Verdict("undecided", reason="it is not known where both sides are real numbers")
+    if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
+        return replace(verdict_of_decision(domain, claim.text, 0.0), verdict="true")
+    if _is_condition(claim):
+        return Verdict("definition", reason=CONDITION)
+    if (point := _counterexample(claim, difference, strict)) is not None:
+        return Verdict("false", counterexample=point)
+    return Verdict(
+        "undecided", reason="no proof was found that its difference has one sign, and no point where it fails"
+    )
+
+
+def _is_condition(claim: Claim) -> bool:
+    """Return whether no letter is on both sides, so that the inequality restricts values of its letters."""
+    assert claim.relation is not None
+    if claim.hypotheses:
+        return False
+    left, right = map(_letters, claim.relation[1:])
+    if left and right:
+        return not left & right
+    sides = [side for side in claim.relation[1:] if _letters(side)]
+    return bool(sides) and (sides[0].kind == "name" or len(left | right) > 1)
+
+
+def _letters(tree: Node) -> set[str]:
+    return {
+        str(node.value)
+        for _, node in walk(tree)
+        if (node.kind == "name" and node.value not in ("pi", "t")) or (node.kind == "call" and node.value != "diff"
+        and [part.value for part in node.args] == ["t"])
+    }  # fmt: skip
+
+
+def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
+    """Return the verdict on an inequality between the three moments of inertia of a body; None for any other.
+
+    With X, Y, Z for the integrals of x^2, y^2, z^2 over the mass, the moments are Y + Z, X + Z and X + Y. These
+    integrals are nowhere negative, and one of them is zero for a plane plate only.
+    """
+    names = {symbol.name for symbol in difference.free_symbols}
+    own = next((moments for moments in MOMENTS if names == {*moments}), None)
+    if own is None:
+        return None
+    integrals = [Symbol(name, nonnegative=True) for name in "XYZ"]
+    x, y, z = integrals
+    moments = dict(zip(own, (y + z, x + z, x + y), strict=True))
+    values = {symbol: moments[symbol.name] for symbol in difference.free_symbols}
+    inside = difference.xreplace(values).expand()
+    known = Identification("inequality of the moments of inertia of a body", "", {}, "integrals of x^2, y^2, z^2")
+    if is_proven_nonnegative(inside):
+        if strict and not is_proven_positive(inside):
+            return Verdict("conditional", conditions=(PLATE,), requires=(PLATE,), recognised_as=(known,))
+        return Verdict("recognised", recognised_as=(known,))
+    if is_proven_nonnegative((-inside).expand()):
+        diagnosis = Diagnosis("sign", "the sign of the inequality is reversed")
+        flipped = flipped.replace(" > ", " >= ").replace(" < ", " <= ")  # with equality, for a plane plate
+        return Verdict("doubtful", diagnosis=diagnosis, recognised_as=(known,), repairs=(Repair(flipped, "sign", 1.0),))
+    return None
+
+
+def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexample | None:
+    """Return an exact point where both sides are defined and the inequality fails; None if none is found."""
+    equation = claim.equation
+    if equation.hypotheses or equation.nonzero or equation.bases:
+        return None
+    symbols = sorted(difference.free_symbols | equation.left.free_symbols | equation.right.free_symbols, key=str)
+    if any(not symbol.is_real for symbol in symbols):
+        return None
+    for values in islice(_points(symbols), MOST_POINTS):
+        value = enclosure(difference, values)
+        if value is None or not _is_defined(equation, values):
+            continue
+        exact = difference.xreplace(values)
+        if value.b < 0 or (strict and exact.is_zero):
+            sides = (side.xreplace(values) for side in (equation.left, equation.right))
+            return Counterexample(tuple(values.items()), None, *sides)
+    return None
+
+
+def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
+    """Yield points with simple values, those that are allowed by the signs of the symbols."""
+    allowed = [
+        [v for v in VALUES if not (s.is_positive and v <= 0) and not (s.is_nonnegative and v < 0)] for s in symbols
+    ]
+    for values in product(*allowed):
+        yield dict(zip(symbols, values, strict=True))
+
+
+def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
+    """Return whether both sides, their divisors and their roots are proven to be defined at a point."""
+    parts = [enclosure(side, values) for side in (equation.left, equation.right, *equation.divisors)]
+    if any(part is None for part in parts) or any(part.a <= 0 <= part.b for part in parts[2:]):
+        return False
+    roots = [enclosure(radicand, values) for radicand in equation.radicands]
+    return all(root is not None and root.a >= 0 for root in roots)
+
+
+def is_inequality(signs: tuple[str, ...]) -> bool:
+    """Return whether the signs of a line are the one sign of an inequality."""
+    return len(signs) == 1 and signs[0] in OPPOSITE

@@ -1,0 +1,152 @@
+"""Formulas of vectors, matrices and quaternions with one usual fault undone, each with its values at some points.
+
+A wrong order of factors, a transpose or a missing square of a matrix changes all entries at once. The search for one
+wrong part of a formula does not see such faults; so whole formulas are compared here.
+"""
+
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from typing import Any, NamedTuple
+
+from symrot.checker.claim.tree import Node, Path, number, product, replaced, walk
+from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
+from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
+from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
+
+__all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
+
+MOST_EDITS = 700
+"""The most edits of one formula that are evaluated."""
+CLOSE = 1e-8
+"""The largest relative difference between sums of entries that are compared further."""
+OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
+"""Functions of vectors, matrices and quaternions."""
+LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
+"""Edits that make another formula likelier than a fault: with a term less, or a vector in the other direction."""
+
+
+class ArrayFault(NamedTuple):
+    """A formula without one fault: the edit, the sum of its entries at the first point, and its values."""
+
+    total: float
+    edit: Edit
+    values: Values
+
+
+def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
+    """Return whether a formula contains the name of a vector, matrix or quaternion, or a product of vectors."""
+    return any(
+        (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
+        for _, node in walk(formula)
+    )
+
+
+def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
+    """Return the formulas that follow from one edit of a formula with arrays, sorted by the sum of their entries."""
+    if not has_arrays(formula, numeric):
+        return []
+    faults = []
+    for edit in islice(_edits(formula, numeric, letters), MOST_EDITS):
+        values = values_of(edit.tree, letters.points)
+        if values is not None:
+            faults.append(ArrayFault(_total(values), edit, values))
+    return sorted(faults, key=lambda fault: fault.total)
+
+
+def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
+    """Yield the edits after which a formula has the values that it should have."""
+    total = _total(needed)
+    slack = CLOSE * (abs(total) + max(map(abs, entries_of(needed[0]))))
+    for fault in islice(faults, bisect_left(faults, total - slack, key=lambda fault: fault.total), None):
+        if fault.total > total + slack:
+            return
+        if all(map(agree, fault.values, needed)):
+            yield fault.edit
+
+
+def _total(values: Values) -> float:
+    return float(sum(entries_of(values[0])))
+
+
+def agree(left: Any, right: Any) -> bool:
+    """Return whether two scalars or matrices are equal to nearly double precision."""
+    if shape_of(left) != shape_of(right):
+        return False
+    size = max(map(abs, entries_of(right)))
+    pairs = zip(entries_of(left), entries_of(right), strict=True)
+    return all(near(a, b) or abs(a - b) <= CLOSE * size for a, b in pairs)
+
+
+def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
+    for edit in single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving):
+        if edit.code not in LEFT_OUT and edit.tree != formula:
+            yield edit
+    yield from _powers(formula, numeric)
+    yield from _conjugates(formula)
+    yield from _factors(formula, numeric, letters)
+
+
+def _with(formula: Node, path: Path, node: Node) -> Node:
+    """Return a formula with another node at a path."""
+    return replaced(formula, path, lambda _: node)
+
+
+def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
+    """Yield the squares of the matrices of a formula, and the matrices in place of their squares."""
+    kinds = {path: node.kind for path, node in walk(formula)}
+    for path, node in walk(formula):
+        if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
+            squared = Node("power", None, (node, number(2)))
+            yield Edit("exponent", COST["exponent"], path, _with(formula, path, squared))
+        elif node.kind == "power" and numeric.is_matrix(node.args[0]):
+            base = node.args[0]
+            yield Edit("exponent", COST["exponent"], path, _with(formula, path, base))
+
+
+def _conjugates(formula: Node) -> Iterator[Edit]:
+    """Yield the formula with one more conjugate, or one less, among the factors of its quaternion products."""
+    for path, node in walk(formula):
+        for place, factor in enumerate(node.args if node.kind == "call" and node.value == "qmul" else ()):
+            is_conjugate = factor.kind == "call" and factor.value == "conjugate"
+            made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
+            cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
+            tree = _with(formula, (*path, place), made)
+            yield Edit("active_passive_transpose", cost, (*path, place), tree)
+
+
+def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
+    """Yield the formula with one more scalar factor in a term: 1 - cos, a sine, a letter, or a bracket of it."""
+    scalars = [*_scalars(formula, numeric, letters)]
+    kinds = {path: node.kind for path, node in walk(formula)}
+    for path, node in walk(formula):
+        is_term = kinds.get(path[:-1], "sum") in ("sum", "neg") or path == ()
+        if not is_term or node.kind == "neg" or not numeric.is_matrix(node):
+            continue
+        for factor in scalars:
+            made = product([factor, node])
+            tree = flattened(_with(formula, path, made))
+            yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
+
+
+def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
+    """Yield the scalars by which a term may have to be multiplied."""
+    made: dict[Node, None] = {}
+    for angle in letters.angles:
+        for function in ("sin", "cos", "tan"):
+            assert function in FUNCTIONS
+            made[Node("call", function, (angle,))] = None
+        cosine = Node("call", "cos", (angle,))
+        made[Node("sum", None, (number(1), Node("neg", None, (cosine,))))] = None
+        made[Node("sum", None, (number(1), cosine))] = None
+    for _, node in walk(formula):
+        is_letter = node.kind == "name" and node in letters.atoms
+        if (is_letter or node.kind == "sum") and not numeric.is_matrix(node):
+            values = values_of(node, letters.points)
+            if values is not None and not any(map(is_matrix, values)):
+                made[node] = None
+    for node in tuple(made):
+        yield node
+        yield Node("power", None, (node, number(2)))
+        yield Node("inv", None, (node,))

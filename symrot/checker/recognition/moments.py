@@ -1,0 +1,77 @@
+"""Formulas that differ from a known one because they are for another body or axis, and not because of a fault.
+
+A body with equal moments of inertia has one letter for them; a moment about a parallel axis is larger by m d^2.
+"""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations, permutations
+
+from symrot.checker.recognition.parts import Letters, Values, near, rational
+from symrot.checker.repair.rows import is_matrix
+
+__all__ = ["is_shifted_moment", "is_symmetric_body"]
+
+EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
+"""Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
+
+
+def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None]) -> bool:
+    """Return whether a claim may mean a body with two equal moments of inertia, for one of which it lacks the letter.
+
+    ``letter`` stands in the place of the absent symbol. Books give equal moments the letter of the first: I_1 for
+    I_1 = I_2, and I_2 for I_2 = I_3.
+    """
+    return any(absent == later and renaming.get(earlier) == letter for earlier, later in EQUAL_MOMENTS)
+
+
+def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
+    """Return whether values are those of a known moment of inertia plus m d^2, for a parallel axis at a distance d.
+
+    The distance is a simple fraction of one length in the claim, or has two such components. Values that are multiples
+    of the known ones are not shifted.
+    """
+    if any(map(is_matrix, (*actual, *known))) or not all(known):
+        return False
+    ratios = [value / other for value, other in zip(actual, known, strict=True)]
+    if min(ratios) <= 1 or all(near(ratio, ratios[0]) for ratio in ratios):
+        return False
+    added = [value - other for value, other in zip(actual, known, strict=True)]
+    for mass, *lengths in permutations(letters.atoms.values(), 2):
+        if _are_squares([_share(added, mass, *lengths)]):
+            return True
+    return any(
+        _are_squares(_shares(added, mass, pair))
+        for mass in letters.atoms.values()
+        for pair in combinations([length for length in letters.atoms.values() if length != mass], 2)
+    )
+
+
+def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
+    """Return the rational number k for which the added values are k m d^2; None if there is none."""
+    return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
+
+
+def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
+    """Return the rational numbers k and l for which the added values are m (k a^2 + l b^2), as far as there are any."""
+    (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
+        (a * a, b * b) for a, b in zip(*lengths, strict=True)
+    ]  # fmt: skip
+    (a, b), (c, d), *_ = rows
+    below = a * d - b * c
+    if not below:
+        return [None]
+    shares = ((first * d - b * second) / below, (a * second - first * c) / below)
+    fits = all(near(value / m, shares[0] * p + shares[1] * q)
+               for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
+    return [rational([share]) for share in shares] if fits else [None]
+
+
+def _are_squares(shares: Sequence[Fraction | None]) -> bool:
+    return all(share is not None and share > 0 and _is_square(share) for share in shares)
+
+
+def _is_square(share: Fraction) -> bool:
+    """Return whether a fraction is the square of a fraction."""
+    return all(math.isqrt(number) ** 2 == number for number in (share.numerator, share.denominator))

@@ -1,0 +1,123 @@
+"""Equations solved for one of their letters, as trees: known relations, and claims that are equations.
+
+The search for faults compares formulas for one quantity. A relation such as ``I w1 + M t = I w2`` has such a formula
+for each letter in which it is linear, or which it has as a square only.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import NamedTuple
+
+from symrot.checker.claim.named_formula import NamedFormula, Solve
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+
+__all__ = ["SolvedRelation", "put_back", "solved_claims", "solved_relations"]
+
+SQUARED = ", squared"
+
+
+class SolvedRelation(NamedTuple):
+    """A known relation, solved for the symbol ``name``, as a known formula for it."""
+
+    name: str
+    known: Known
+
+
+class Solution(NamedTuple):
+    """An equation ``coefficient * letter**exponent == rest``."""
+
+    letter: Node
+    coefficient: Node
+    rest: Node
+    exponent: int
+
+
+@cache
+def solved_relations() -> tuple[SolvedRelation, ...]:
+    """Return every known relation once for each symbol for which it can be solved."""
+    solved = []
+    for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
+        tree = read_expression(known.text)
+        for name in dict.fromkeys(str(node.value) for _, node in walk(tree) if node.kind == "name"):
+            solution = _solution(_terms(tree), Node("name", name)) if name != "pi" else None
+            if solution is not None:
+                value = product([solution.rest, Node("inv", None, (solution.coefficient,))])
+                title = known.name + SQUARED * (solution.exponent == 2)
+                solved.append(SolvedRelation(name, Known(title, known.source, text(value))))
+    return tuple(solved)
+
+
+def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
+    """Yield an equation solved for each of the given letters and rates in which it, or their square, is linear.
+
+    The letter stays on a side of its own with its factor: ``I*w2 == I*w1 + M*t``.
+    """
+    terms = [*_terms(left), *map(negated, _terms(right))]
+    for atom in atoms:
+        solution = _solution(terms, atom)
+        if solution is None:
+            continue
+        coefficient, rest = solution.coefficient, solution.rest
+        if coefficient.kind == "neg":
+            coefficient, rest = negated(coefficient), sum_of([negated(term) for term in _terms(rest)])
+        name = atom.args[0] if atom.value == "diff" else atom
+        power = atom if solution.exponent == 1 else Node("power", None, (atom, number(2)))
+        side = product([coefficient, power]) if coefficient != number(1) else power
+        yield NamedFormula(str(name.value), side, rest, name is not atom, _solve(coefficient, solution.exponent))
+
+
+def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
+    """Return the sides of an equation after a change of its solved form, for which one term became another one.
+
+    ``tree`` is the changed formula of ``named``, which :func:`solved_claims` returned. The result is None if more than
+    one term changed.
+    """
+    before, after = _terms(named.formula), _terms(tree)
+    changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]
+    if len(before) != len(after) or len(changed) != 1:
+        return None
+    ((old, new),) = changed
+    exchanged = {old: new, negated(old): negated(new)}
+    sides = [[exchanged.get(term, term) for term in _terms(side)] for side in (left, right)]
+    return sum_of(sides[0]), sum_of(sides[1])
+
+
+def _solve(coefficient: Node, exponent: int) -> Solve:
+    """Return the function that turns a formula for the side with a letter into a formula for the letter."""
+
+    def solved(formula: Node) -> Node:
+        quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula
+        return quotient if exponent == 1 else Node("call", "sqrt", (quotient,))
+
+    return solved
+
+
+def _terms(tree: Node) -> list[Node]:
+    return list(tree.args) if tree.kind == "sum" else [tree] if tree != number(0) else []
+
+
+def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
+    """Return a sum of terms, which is zero, solved for a letter; None if this cannot be read off its terms."""
+    with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
+    rest = [negated(term) for term in terms if term not in with_letter]
+    coefficients = [_without(term, letter) for term in with_letter]
+    exponents = {exponent for _, exponent in filter(None, coefficients)}
+    if not rest or None in coefficients or len(exponents) != 1:
+        return None
+    return Solution(letter, sum_of([made for made, _ in filter(None, coefficients)]), sum_of(rest), exponents.pop())
+
+
+def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
+    """Return a term without a factor that is a letter or its square, with its exponent; None if it has none."""
+    if term.kind == "neg":
+        inner = _without(term.args[0], letter)
+        return None if inner is None else (negated(inner[0]), inner[1])
+    factors = list(term.args) if term.kind == "product" else [term]
+    square = Node("power", None, (letter, number(2)))
+    own = [factor for factor in factors if factor in (letter, square)]
+    others = [factor for factor in factors if factor not in own]
+    if len(own) != 1 or any(letter == node for factor in others for _, node in walk(factor)):
+        return None
+    return product(others), 1 if own[0] == letter else 2

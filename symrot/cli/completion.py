@@ -1,0 +1,65 @@
+"""Completion of the command line in bash, zsh and fish, by argcomplete: scenes, kernels, derivations, topics."""
+
+from argparse import Action, ArgumentParser, _SubParsersAction
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from symrot.catalogue import names as derivations
+from symrot.exercises.templates import TOPICS
+from symrot.propagation.method import METHODS
+from symrot.scene.file import shipped_names
+from symrot.textbook import DOCUMENTS
+
+__all__ = ["complete", "completers"]
+
+
+def _kernels() -> list[str]:
+    from symrot.workshop.emit import kernel_names
+
+    return [*kernel_names(), *shipped_names()]
+
+
+NAMES: Mapping[str, Callable[[], Iterable[str]]] = {
+    "scene": shipped_names,
+    "kernel": _kernels,
+    "name": derivations,
+    "topic": lambda: TOPICS,
+    "method": lambda: METHODS,
+    "textbook": lambda: DOCUMENTS,
+}
+"""Name of an argument -> function that returns the names it may have; files may follow too."""
+
+
+def completers(parser: ArgumentParser) -> dict[str, Action]:
+    """Return the arguments of a parser and its commands whose names can be completed, each with a completer."""
+    from argcomplete.completers import FilesCompleter
+
+    known: dict[str, Action] = {}
+    for action in parser._actions:
+        if isinstance(action, _SubParsersAction):
+            for command in action.choices.values():
+                known |= completers(command)
+        elif action.dest in NAMES:
+            action.completer = _Names(NAMES[action.dest], FilesCompleter())  # type: ignore[attr-defined]
+            known[action.dest] = action
+    return known
+
+
+class _Names:
+    """A completer: the names that begin with what was typed, and files."""
+
+    def __init__(self, names: Callable[[], Iterable[str]], files: Any) -> None:
+        self.names, self.files = names, files
+
+    def __call__(self, prefix: str, **context: Any) -> list[str]:
+        return [*(name for name in self.names() if name.startswith(prefix)), *self.files(prefix, **context)]
+
+
+def complete(parser: ArgumentParser) -> None:
+    """Print the words that may follow, and end the process, if a shell asks for them and argcomplete is installed."""
+    try:
+        from argcomplete import autocomplete
+    except ImportError:
+        return
+    completers(parser)
+    autocomplete(parser)

@@ -1,0 +1,38 @@
+"""Pauli's matrices, compared with products of complex matrices that NumPy computes."""
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError
+
+X, Y, Z = np.array([[0, 1], [1, 0]]), np.array([[0, -1j], [1j, 0]]), np.array([[1, 0], [0, -1]])
+CASES = (
+    ("σ_x σ_y = i σ_z", X @ Y - 1j * Z),
+    ("σ_x σ_y = -i σ_z", X @ Y + 1j * Z),
+    ("σ_y σ_x = -i σ_z", Y @ X + 1j * Z),
+    (r"\sigma_1 \sigma_2 - \sigma_2 \sigma_1 = 2 i \sigma_3", X @ Y - Y @ X - 2j * Z),
+    (r"\sigma_x \sigma_y \sigma_z = i", X @ Y @ Z - 1j * np.eye(2)),
+    ("(1 + i σ_z) σ_x (1 - i σ_z) = -2 σ_y", (np.eye(2) + 1j * Z) @ X @ (np.eye(2) - 1j * Z) + 2 * Y),
+)
+
+
+@pytest.mark.parametrize(("text", "difference"), CASES, ids=[text for text, _ in CASES])
+def test_products_are_those_of_the_matrices(text, difference):
+    assert symrot.check(text).verdict == ("false" if np.any(difference) else "true")
+
+
+def test_half_angles_rotate_a_matrix():
+    half = r"(\cos\frac{\theta}{2} %s i\sigma_z \sin\frac{\theta}{2})"
+    text = half % "-" + r"\sigma_x" + half % "+" + r" = \sigma_x \cos\theta + \sigma_y \sin\theta"
+    assert symrot.check(text).verdict == "true"
+
+
+@pytest.mark.parametrize("text", ["σ_x = E ε_x", "v_i = i σ_x + σ_y"])
+def test_other_quantities_with_these_letters_are_not_false(text):
+    assert symrot.check(text).verdict == "definition"
+
+
+def test_a_matrix_in_an_exponent_is_refused():
+    with pytest.raises(InputError, match="expected sigma_z outside of exponents"):
+        symrot.check(r"e^{-i\theta\sigma_z/2} = \cos(\theta/2) - i\sigma_z\sin(\theta/2)")

@@ -1,0 +1,55 @@
+"""What the shell completes, and what a mistyped word is told."""
+
+import pytest
+
+from symrot.cli.main import COMMANDS, _parser, main
+from symrot.errors import nearest, with_hint
+
+
+def completions(line):
+    """Return the words that argcomplete offers after a line."""
+    argcomplete = pytest.importorskip("argcomplete")
+    from symrot.cli.completion import completers
+
+    parser = _parser("")
+    completers(parser)
+    finder = argcomplete.CompletionFinder(parser)
+    _, prefix, _, words, _ = argcomplete.split_line(line, len(line))
+    return [word.strip() for word in finder._get_completions(words, prefix, "", None)]
+
+
+@pytest.mark.parametrize(("line", "word"), [
+    ("symrot ru", "run"), ("symrot run t_h", "t_handle"), ("symrot run t_handle --pl", "--plot"),
+    ("symrot run t_handle --method ta", "taylor"), ("symrot derive poin", "poinsot"),
+    ("symrot emit euler_zxz_body_r", "euler_zxz_body_rates"), ("symrot exercise heavy", "heavy_tops"),
+    ("symrot check --textbook bro", "brown"), ("symrot emit x --target nu", "numpy"),
+])  # fmt: skip
+def test_a_shell_completes_commands_options_and_names(line, word):
+    assert word in completions(line)
+
+
+def test_a_shell_completes_nothing_that_does_not_fit():
+    assert "t_handle" not in completions("symrot run heavy")
+    assert completions("symrot run --zzz") == []
+
+
+@pytest.mark.parametrize(("words", "hint"), [
+    (["run", "t_handl"], "did you mean 't_handle'? `symrot scenes` lists all"),
+    (["run", "t_handle", "--plto", "x.png"], "run: expected an option of `symrot run --help`, got '--plto' (did you mean '--plot'?)"),
+    (["run", "t_handle", "more"], "expected no further word of `symrot run --help`, got 'more'"),
+    (["run", "t_handle", "--method", "tayler"], "did you mean 'taylor'?"),
+    (["derive", "poinso"], "did you mean 'poinsot'? `symrot derive` lists all"),
+    (["emit", "quaternion_to_dcm"], "did you mean 'quaternion_of_dcm'?"),
+    (["check", "--textbook", "browm"], "did you mean 'brown'?"),
+    (["exercise", "heavy_top"], "did you mean 'heavy_tops'?"),
+    (["bench", "t_handle", "--methods", "taylr"], "did you mean 'taylor'?"),
+    (["sow"], "did you mean 'show'?"),
+])  # fmt: skip
+def test_a_mistyped_word_is_told_the_nearest_one(words, hint, capsys):
+    assert main(words) == 2
+    assert hint in capsys.readouterr().err
+
+
+def test_a_word_like_no_other_gets_no_hint():
+    assert nearest("zzzzzz", COMMANDS) == ""
+    assert with_hint("expected a command", "zzzzzz", COMMANDS) == "expected a command"
