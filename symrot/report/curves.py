@@ -65,7 +65,7 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
     t, values : arrays, shape (n,)
         Times in increasing order, and the values of the curve there.
     columns : float
-        The width of the panel in pixels; bins are at least this narrow part of it, and hold two periods of the curve.
+        The width of the panel in pixels. A bin is at least one pixel wide and holds about two periods of the curve.
 
     Returns
     -------
@@ -165,8 +165,9 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
+    """Return whether a curve is drawn as a band; times out of order have no bins, and their curve stays a line."""
     known = np.isfinite(curve)
-    if np.count_nonzero(known) < 3:
+    if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
         return False
     return is_too_fast(t[known], curve[known], size[0], 2.0 * NEAR * height / size[1])
 

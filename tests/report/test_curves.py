@@ -55,6 +55,13 @@ def test_only_visible_oscillations_faster_than_the_pixels_are_bands():
     assert not [item for item in axes.collections if isinstance(item, PolyCollection)]
 
 
+def test_a_curve_with_times_out_of_order_stays_a_line():
+    t = np.linspace(1, 0, 20_001)
+    axes = panel()
+    draw_curves(axes, t, [np.sin(5000 * t)], ["sine"])
+    assert not axes.collections and np.array_equal(axes.lines[0].get_ydata(), np.sin(5000 * t))
+
+
 def test_equal_bands_differ_in_hatching_and_a_note_explains_them():
     t = np.linspace(0, 1, 20_001)
     axes = panel()
