@@ -324,7 +324,7 @@ class Trajectory(MotionSamples):
     def plot(self, ax: Any = None, panel: str = "rates") -> Any:
         """Draw one panel of the figure into axes of matplotlib, and return the axes; see :func:`symrot.plot`.
 
-        ``panel`` is ``"rates"``, ``"attitude"``, ``"drift"``, ``"body"`` or ``"space"``.
+        ``panel`` is ``"rates"``, ``"attitude"``, ``"vertical"``, ``"drift"``, ``"space"`` or ``"body"``.
         """
         return symrot.plot(self, ax, panel)
 

@@ -14,20 +14,25 @@ from numpy.typing import NDArray
 
 from symrot import __version__
 from symrot.errors import InputError
+from symrot.report.curves import columns_of, draw_curves
 from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
+from symrot.report.vertical import has_vertical, vertical_angles
 
 if TYPE_CHECKING:
     from symrot.propagation.trajectory import Trajectory
 
-__all__ = ["PANELS", "SUFFIXES", "figure", "plot", "require_matplotlib", "save"]
+__all__ = ["PANELS", "SUFFIXES", "dense", "figure", "plot", "require_matplotlib", "save"]
 
 Floats = NDArray[np.float64]
 
 SUFFIXES = (".png", ".pdf", ".svg")
-FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # limits of the number of samples in a plot, and samples per step
-WIDTHS = (2.0, 1.6, 1.2, 0.9)  # later curves are thinner and drawn on top, so that equal curves all stay visible
+FEWEST, MOST = 4000, 120_000  # limits of the number of samples in a plot
+PER_STEP, PER_RADIAN = 20, 16  # samples per step of the method, and per radian of the fastest rotation
 TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
+WIDE = 900.0  # columns
+GOLDEN = (5.0**0.5 - 1.0) / 2.0
+DRIFT_WIDTHS = (1.6, 1.3)  # points
 QUIET = 0.01  # a component that changes by less than this fraction of its size may be written as text, not drawn
 
 
@@ -39,10 +44,64 @@ def require_matplotlib(option: str = "--plot") -> None:
         )
 
 
+def dense(trajectory: Any) -> Any:
+    """Return a motion at as many times as a picture shows, if it has a dense solution; otherwise its own samples.
+
+    The times are evenly spaced. If the motion has more rotations than samples can follow, they are shifted by golden
+    fractions of their distance, so that they do not keep step with the rotation and meet all its phases.
+    """
+    from symrot.propagation.trajectory import Trajectory
+
+    low, high = float(np.min(trajectory.t)), float(np.max(trajectory.t))
+    if low == high or not isinstance(trajectory, Trajectory):  # motions of ensembles and of files have samples alone
+        return trajectory
+    radians = _fastest(trajectory) * (high - low)
+    sufficient = max(float(FEWEST), PER_RADIAN * radians, float(PER_STEP * trajectory.stats.accepted))
+    count = int(min(sufficient, MOST))
+    times = np.linspace(low, high, count)
+    if PER_RADIAN * radians > MOST:
+        places = np.arange(1, count - 1)
+        times[1:-1] += (np.mod(places * GOLDEN, 1.0) - 0.5) * (high - low) / (count - 1)
+    return trajectory.at(times)
+
+
+def _fastest(trajectory: Any) -> float:
+    """Return an estimate of the fastest rate in a motion, rad/s: of the body, or of its answer to a rotor."""
+    moments = [float(moment) for moment in trajectory.scene.body.principal.moments]
+    rotor = float(np.linalg.norm(_rotor(trajectory.scene)))
+    return float(np.max(np.linalg.norm(trajectory.omega, axis=1))) + rotor / (min(moments) or max(moments))
+
+
+def _rotor(scene: Any) -> Floats:
+    """Return the angular momentum of all rotors of a scene, body components, shape (3,)."""
+    total = np.zeros(3)
+    for torque in scene.torques:
+        if torque.kind == "rotor":
+            total += np.array(torque.vector("angular_momentum"), dtype=float)
+    return total
+
+
 def _times(trajectory: Any) -> tuple[Floats, str]:
     span = float(np.ptp(trajectory.t))
     _, size, unit = next(row for row in TIMES if span >= row[0])
     return trajectory.t / size, unit
+
+
+def _is_wide(axes: Any) -> bool:
+    """Return whether a title on the left and a legend on the right fit beside each other above the axes."""
+    from matplotlib import rcParams
+
+    return bool(rcParams["axes.titlelocation"] == "left" and columns_of(axes)[0] >= WIDE)
+
+
+def _legend(axes: Any) -> None:
+    """Name the curves above the axes, or in a corner of axes that are too narrow for it."""
+    count = len(axes.get_legend_handles_labels()[1])
+    if _is_wide(axes):
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
+    else:
+        axes.legend(loc="upper right", ncols=count, handlelength=1.6, columnspacing=0.8, fontsize="small",
+                    frameon=True, framealpha=0.85)  # fmt: skip
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
@@ -51,15 +110,13 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
     others = np.max(largest[~steady], initial=0.0)
-    for number, name in enumerate(names):
-        label, colour = name, COLOURS[number]
-        if steady[number] and largest[number] > 3 * others > 0:
-            ends = dict.fromkeys(f"{end:.6g}" for end in (low[number], high[number]))
-            axes.plot([], [], " ", label=f"{name} = {' to '.join(ends)} {unit}")
-        else:
-            axes.plot(t, columns[:, number], color=colour, label=label, linewidth=WIDTHS[number])
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=len(names), handlelength=1.4, columnspacing=1.2)
-    axes.grid(True)
+    written = steady & (largest > 3 * others) & (others > 0)
+    drawn = np.flatnonzero(~written)
+    draw_curves(axes, t, [columns[:, i] for i in drawn], [names[i] for i in drawn], [COLOURS[i] for i in drawn])
+    for number in np.flatnonzero(written):
+        ends = dict.fromkeys(f"{end:.6g}" for end in (low[number], high[number]))
+        axes.plot([], [], " ", label=f"{names[number]} = {' to '.join(ends)} {unit}")
+    _legend(axes)
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
@@ -81,59 +138,70 @@ def _attitude(axes: Any, t: Floats, trajectory: Any) -> None:
     sequence = trajectory.scene.output.sequence
     if sequence is None:
         _lines(axes, t, trajectory.quaternion, [f"$q_{i}$" for i in range(4)], "")
-        axes.set_title("Attitude, quaternion body to space")
-        axes.set_ylabel("quaternion (1)")
+        axes.set_title("Attitude, quaternion")
+        axes.set_ylabel("body to space (1)")
         return
     angles = trajectory.euler(sequence, degrees=True)
     kind = "intrinsic" if sequence.isupper() else "extrinsic"
-    names = [rf"{axis} ({place})" for axis, place in zip(sequence, ("first", "second", "third"), strict=True)]
-    for number, name in enumerate(names):
-        angle = _unwrapped(angles[:, number], 360.0)
-        axes.plot(t, angle, color=COLOURS[number], label=name, linewidth=WIDTHS[number])
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=3, handlelength=1.4, columnspacing=1.2)
-    axes.grid(True)
+    names = [rf"$\{letter}$ about {axis}" for letter, axis in zip(("phi", "theta", "psi"), sequence, strict=True)]
+    draw_curves(axes, t, [_unwrapped(column, 360.0) for column in angles.T], names)
+    _legend(axes)
     axes.set_title(f"Euler angles {sequence}, {kind}")
     axes.set_ylabel("deg")
 
 
+def _vertical(axes: Any, t: Floats, trajectory: Any) -> None:
+    angles = vertical_angles(trajectory)
+    columns = np.degrees(angles.columns)
+    draw_curves(axes, t, [_unwrapped(column, 360.0) for column in columns.T], angles.names)
+    _legend(axes)
+    axes.set_title(angles.title)
+    axes.set_ylabel("deg")
+
+
 def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
-    axes.set_title("Drift of conserved quantities")
+    """Draw the largest change of each conserved quantity up to each time, on a logarithmic scale."""
+    axes.set_title("Drift of conserved quantities, the largest so far")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
     axes.set_autoscaley_on(False)  # the limits are set below, because a single flat line would give none
-    changes = []
-    for number, item in enumerate(trajectory.invariants):
-        change = np.abs(item.values - item.values[0]) / (item.scale or 1.0)
-        changes.append(change)
-        visible_change = np.where(change > 0, change, np.nan)
-        norm = item.name == "quaternion norm"  # the least informative curve is drawn behind the others
-        colour = FAINT if norm else COLOURS[number % len(COLOURS)]
-        axes.plot(t, visible_change, color=colour, linewidth=0.8, label=item.name, zorder=1.5 if norm else 2)
+    items = sorted(trajectory.invariants, key=lambda item: item.name != "quaternion norm")  # least informative: behind
+    curves: list[Floats] = []
+    names: list[str] = []
+    colours: list[str] = []
+    for item in items:
+        change = np.maximum.accumulate(np.abs(item.values - item.values[0])) / (item.scale or 1.0)
+        curves.append(np.where(change > 0, change, np.nan))
+        names.append(item.name if change[-1] > 0 else f"{item.name} (no change)")
+        colours.append(FAINT if item.name == "quaternion norm" else COLOURS[len(colours) % len(COLOURS)])
+    positive = np.concatenate([curve[np.isfinite(curve)] for curve in curves] or [np.array([tolerance])])
+    low, high = (positive.min(), positive.max()) if len(positive) else (tolerance, tolerance)
+    axes.set_ylim(0.3 * min(low, tolerance), 20 * max(high, tolerance))
+    draw_curves(axes, t, curves, names, colours, DRIFT_WIDTHS)
     axes.axhline(tolerance, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))
     axes.annotate(f"tolerance {tolerance:g}", (0.0, tolerance), xycoords=("axes fraction", "data"), xytext=(4, 3),
                   textcoords="offset points", color=GREY, fontsize=8)  # fmt: skip
-    positive = np.concatenate([change[change > 0] for change in changes] or [np.array([tolerance])])
-    low, high = np.quantile(positive, [0.02, 1.0]) if len(positive) else (tolerance, tolerance)
-    axes.set_ylim(0.3 * min(low, tolerance), 20 * max(high, tolerance))
-    if not changes:
+    if not curves:
         axes.text(0.5, 0.65, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
                   ha="center", color=GREY)  # fmt: skip
         return
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=5, handlelength=1.0, columnspacing=1.0)
-    axes.grid(True)
+    handles = sorted(axes.get_legend_handles_labels()[0], key=lambda handle: handle.get_label() == "quaternion norm")
+    if _is_wide(axes):
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=4, handlelength=2.0,
+                    columnspacing=1.0)  # fmt: skip
+    else:
+        axes.legend(handles=handles, loc="center right", ncols=2, handlelength=1.6, columnspacing=0.8, fontsize="small",
+                    frameon=True, framealpha=0.85)  # fmt: skip
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
     """Draw the path of a free body's angular momentum among other possible paths, or any other body's rotation axis."""
-    torques = trajectory.scene.torques
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
         axes.set_title("Axis of rotation in the body")
         return
     inertia = np.array(trajectory.scene.body.inertia, dtype=float)
-    rotor = np.zeros(3)
-    for torque in torques:
-        rotor += np.array(torque.vector("angular_momentum"), dtype=float)
+    rotor = _rotor(trajectory.scene)
     momentum = trajectory.angular_momentum_body
     size = float(np.linalg.norm(momentum[0]))
 
@@ -143,9 +211,7 @@ def _body_sphere(axes: Any, trajectory: Any) -> None:
         return energies
 
     axes.set_title("Angular momentum in the body")
-    if draw_directions(axes, momentum, ("1", "2", "3"), energy):
-        note = "thin: other paths, each of one energy"
-        axes.text(0.5, -0.02, note, transform=axes.transAxes, ha="center", color=GREY)
+    draw_directions(axes, momentum, ("1", "2", "3"), energy, "thin: other paths, each of one energy")
 
 
 def _space_sphere(axes: Any, trajectory: Any) -> None:
@@ -158,11 +224,13 @@ def _space_sphere(axes: Any, trajectory: Any) -> None:
 OVER_TIME: dict[str, Callable[[Any, Floats, Any], None]] = {
     "rates": _rates,
     "attitude": _attitude,
+    "vertical": _vertical,
     "drift": lambda axes, t, trajectory: _drift(axes, t, trajectory, trajectory.tolerance),
 }
-ON_SPHERES: dict[str, Callable[[Any, Any], None]] = {"body": _body_sphere, "space": _space_sphere}
+ON_SPHERES: dict[str, Callable[[Any, Any], None]] = {"space": _space_sphere, "body": _body_sphere}
 PANELS = (*OVER_TIME, *ON_SPHERES)
-"""The panels of a figure: angular velocity, attitude, drift of conserved quantities; paths in the body and in space."""
+"""The panels of a figure: angular velocity, attitude, angles to the vertical if the scene has one, drift of conserved
+quantities; paths in the body and in space."""
 
 
 def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
@@ -171,12 +239,14 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Parameters
     ----------
     trajectory : Trajectory
-        The motion; the panel joins its samples.
+        The motion. The panel draws its dense solution between its first and its last sample; of a motion of an
+        ensemble or of a file, it joins the samples.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
         ``"rates"``, the angular velocity in the body; ``"attitude"``, Euler angles if the scene has a sequence, else
-        the quaternion; ``"drift"`` of the conserved quantities; ``"body"``, the path of the angular momentum or the
+        the quaternion; ``"vertical"``, the angles to the vertical of a body under gravity or of a satellite under a
+        gravity gradient; ``"drift"`` of the conserved quantities; ``"body"``, the path of the angular momentum or the
         axis of rotation in the body; ``"space"``, the path of the symmetry axis in space.
 
     Returns
@@ -187,7 +257,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Raises
     ------
     InputError
-        If there is no such panel, matplotlib is not installed, or the trajectory has no samples or no attitude to draw.
+        If there is no such panel, matplotlib is not installed, the trajectory has no samples or no attitude to draw, or
+        the scene has no vertical and the panel needs one.
 
     Examples
     --------
@@ -201,7 +272,11 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     require_matplotlib("plot")
     if not len(trajectory):
         raise InputError("plot: expected a trajectory with samples, got one without")
-    if panel in ("attitude", "space"):
+    if np.ndim(trajectory.omega) != 2:
+        raise InputError("plot: expected one motion, got an ensemble; plot one of its motions, such as ensemble[0]")
+    if panel == "vertical" and not has_vertical(trajectory.scene):
+        raise InputError("panel: expected a scene with one torque of gravity or gravity_gradient for 'vertical'")
+    if panel in ("attitude", "vertical", "space"):
         trajectory.quaternion  # noqa: B018 - an error comes before a new figure
     if ax is None:
         from matplotlib import pyplot
@@ -209,6 +284,7 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
         ax = pyplot.subplots()[1]
     if getattr(ax, "name", "") == "3d":
         raise InputError("ax: expected axes in the plane, got axes in space; leave out projection='3d'")
+    trajectory = dense(trajectory)
     if panel in ON_SPHERES:
         ON_SPHERES[panel](ax, trajectory)
         return ax
@@ -221,41 +297,50 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure of a motion: four panels on one page."""
+    """Return a matplotlib Figure of the samples of a motion: all its panels on one page."""
     from matplotlib.figure import Figure
 
-    page = Figure(figsize=(12.0, 8.0))
-    attitude = trajectory.has_attitude
-    left = page.add_gridspec(3 if attitude else 2, 1, left=0.065, right=0.6, top=0.865, bottom=0.125, hspace=0.48)
-    right = page.add_gridspec(2 if attitude else 1, 1, left=0.7, right=0.985, top=0.865, bottom=0.095, hspace=0.3)
+    names = [name for name in OVER_TIME if name not in _left_out(trajectory)]
+    height = 8.0 if len(names) < 4 else 10.0  # inches
+    page = Figure(figsize=(12.0, height))
+    top, bottom = 1.0 - 1.08 / height, 1.05 / height
+    left = page.add_gridspec(len(names), 1, left=0.065, right=0.6, top=top, bottom=bottom, hspace=0.48)
+    paths = [name for name in ON_SPHERES if name not in _left_out(trajectory)]
+    right = page.add_gridspec(len(paths), 1, left=0.7, right=0.985, top=top, bottom=0.76 / height, hspace=0.3)
     t, unit = _times(trajectory)
-    panels = [page.add_subplot(left[row]) for row in range(3 if attitude else 2)]
-    _rates(panels[0], t, trajectory)
-    if attitude:
-        _attitude(panels[1], t, trajectory)
-        _space_sphere(page.add_subplot(right[0]), trajectory)
-    _body_sphere(page.add_subplot(right[-1]), trajectory)
-    _drift(panels[-1], t, trajectory, tolerance)
-    for panel in panels:
+    for row, name in enumerate(names):
+        panel = page.add_subplot(left[row])
+        OVER_TIME[name](panel, t, trajectory)
         panel.set_xlim(t[0], t[-1])
         panel.set_xlabel(f"t ({unit})", labelpad=1)
+    for row, name in enumerate(paths):
+        ON_SPHERES[name](page.add_subplot(right[row]), trajectory)
     _words(page, trajectory, tolerance)
     return page
 
 
+def _left_out(trajectory: Any) -> set[str]:
+    """Return the panels that a motion does not have."""
+    if not trajectory.has_attitude:
+        return {"attitude", "vertical", "space"}
+    return set() if has_vertical(trajectory.scene) else {"vertical"}
+
+
 def _words(page: Any, trajectory: Any, tolerance: float) -> None:
     scene, stats = trajectory.scene, trajectory.stats
-    page.text(0.02, 0.972, literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
-    page.text(0.02, 0.928, literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
+    inch = 1.0 / page.get_figheight()
+    page.text(0.02, 1.0 - 0.224 * inch, literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
+    page.text(0.02, 1.0 - 0.576 * inch, literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
+    steps = f"{stats.accepted} step{'' if stats.accepted == 1 else 's'}"
     caption = (
-        f"{literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {stats.accepted} steps   |   "
+        f"{literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {steps}   |   "
         f"paths run from the dot (dark) to the square (light)   |   symrot {__version__}"
     )
-    page.text(0.98, 0.018, caption, fontsize=8, color=GREY, ha="right")
+    page.text(0.98, 0.144 * inch, caption, fontsize=8, color=GREY, ha="right")
 
 
 def save(propagator: Any, trajectory: Any, path: Path) -> None:
-    """Draw a motion into a file; if the scene has too few or too many samples for a plot, propagate the motion again.
+    """Draw a motion into a file, from its dense solution.
 
     Parameters
     ----------
@@ -264,8 +349,5 @@ def save(propagator: Any, trajectory: Any, path: Path) -> None:
     path : Path
         The file to write; its suffix, one of :data:`SUFFIXES`, decides the format.
     """
-    count = min(max(FEWEST, len(trajectory), PER_STEP * trajectory.stats.accepted), MOST)
-    if count != len(trajectory):
-        span = trajectory.scene.span
-        trajectory = propagator(np.linspace(float(span.start), float(span.stop), count))
-    draw(lambda: figure(trajectory, propagator.tolerance), path, few_colours=False)
+    motion = dense(trajectory)
+    draw(lambda: figure(motion, propagator.tolerance), path, few_colours=False)

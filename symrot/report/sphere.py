@@ -1,12 +1,15 @@
 """Drawing of a direction's path on a sphere seen from far away, or on a tangent plane if the path is small."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FAINT", "draw_directions", "prefixed"]
+from symrot.report.picture import GREY
+
+__all__ = ["FAINT", "Window", "draw_directions", "prefixed"]
 
 Floats = NDArray[np.float64]
 
@@ -15,10 +18,40 @@ ELEVATION, ASIDE = np.radians(24.0), np.radians(28.0)  # viewpoint: above the eq
 SMALL, STILL = 0.2, 1e-12  # rad: smaller paths are drawn on a plane; paths smaller than STILL as a point
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "\N{GREEK SMALL LETTER MU}"), (1e-9, "n"), (1e-12, "p"))
 ROOM = 1.26  # half the width of a drawing, in radii
-BACK = 0.22  # opacity of curves behind the sphere
+BACK, BACK_PATH = 0.22, 0.45  # strength of thin curves and of a path behind the sphere
 CURVES = 12
 FINEST = 241  # grid points across the disc for level curves
 MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or SVG; longer paths become an image
+SHADES = 240  # colours along a path
+LONGEST = 0.5  # radii: farther samples of a path are not joined, for a chord would show nothing
+MOST_GAPS = 0.01  # fraction of the samples
+CLOSE = 0.75  # radii: a path seen from above its middle that is smaller than this fills a part of the sphere only
+MARGIN = 1.2  # width of an enlarged drawing, relative to the path's
+GRIDS = (30.0, 15.0, 10.0, 5.0)  # degrees between grid lines
+INSET = 0.24  # width of the whole sphere in a corner of an enlarged drawing, relative to the drawing's
+
+
+@dataclass(frozen=True)
+class Window:
+    """The part of the sphere that is drawn: a square around ``centre`` on the plane of the drawing, in radii."""
+
+    centre: tuple[float, float] = (0.0, 0.0)
+    half: float = ROOM
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the whole sphere is drawn."""
+        return self.half >= 1.0
+
+    @property
+    def spacing(self) -> float:
+        """Degrees between the parallels: the widest spacing with at least four across the window."""
+        across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
+        return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
+
+    def contains(self, x: float, y: float) -> bool:
+        """Return whether a point of the drawing lies well inside the window."""
+        return max(abs(x - self.centre[0]), abs(y - self.centre[1])) < 0.95 * self.half
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
@@ -47,6 +80,26 @@ def _eye(directions: Floats) -> Floats:
     return np.array([right, np.cross(toward, right), toward])
 
 
+def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
+    """Return a view from above the middle of a path and a window around it; None if the path fills the sphere."""
+    middle = directions.mean(axis=0)
+    length = float(np.linalg.norm(middle))
+    if length < 0.5:
+        return None
+    toward = middle / length
+    level = (
+        np.array([-toward[1], toward[0], 0.0]) if np.hypot(toward[0], toward[1]) > 0.05 else np.array([0.0, 1.0, 0.0])
+    )
+    right = level - toward * (level @ toward)
+    right /= np.linalg.norm(right)
+    view = np.array([right, np.cross(toward, right), toward])
+    x, y, z = view @ directions.T
+    half = MARGIN * 0.5 * max(float(np.ptp(x)), float(np.ptp(y)))
+    if float(z.min()) <= 0.0 or not STILL < half <= MARGIN * CLOSE:
+        return None
+    return view, Window((0.5 * float(x.min() + x.max()), 0.5 * float(y.min() + y.max())), half)
+
+
 def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
     """Draw a thin curve on the sphere, faint on the far side."""
     x, y, z = view @ points.T
@@ -55,54 +108,88 @@ def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
         axes.plot(x * mask, y * mask, alpha=opacity, **style)
 
 
-def _globe(axes: Any, view: Floats, labels: tuple[str, ...]) -> None:
+def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fontsize: float | None = None) -> None:
     """Draw the sphere: its outline, parallels, meridians and the three axes."""
     turn = np.linspace(0.0, 2 * np.pi, 361)
     axes.fill(np.cos(turn), np.sin(turn), facecolor="#fafafa", edgecolor=FAINT, linewidth=0.8, zorder=0)
-    for latitude in np.radians([-60.0, -30.0, 0.0, 30.0, 60.0]):
+    spacing = window.spacing
+    for latitude in np.radians(np.arange(spacing - 90.0, 90.0, spacing)):
         ring = np.cos(latitude) * np.array([np.cos(turn), np.sin(turn), 0 * turn])
         _curve(axes, (ring + np.array([[0.0], [0.0], [np.sin(latitude)]])).T, view, color=GRID, linewidth=0.5, zorder=1)
-    for longitude in np.radians(np.arange(0.0, 180.0, 30.0)):
+    for longitude in np.radians(np.arange(0.0, 180.0, max(spacing, 10.0))):
         direction = np.array([np.cos(longitude), np.sin(longitude), 0.0])
         ring = np.outer(np.cos(turn), direction) + np.outer(np.sin(turn), [0.0, 0.0, 1.0])
         _curve(axes, ring, view, color=GRID, linewidth=0.5, zorder=1)
     for number, label in enumerate(labels):
         x, y, z = view[:, number]
         opacity = 1.0 if z >= 0 else 0.45
-        axes.plot([x, 1.1 * x], [y, 1.1 * y], color=DARK, linewidth=1.1, alpha=opacity, zorder=4)
-        axes.text(1.19 * x, 1.19 * y, label, color=DARK, alpha=opacity, ha="center", va="center", zorder=5)
+        if window.is_whole:
+            axes.plot([x, 1.1 * x], [y, 1.1 * y], color=DARK, linewidth=1.1, alpha=opacity, zorder=4)
+            beyond = 1.1 + 0.1 / max(float(np.hypot(x, y)), 0.1)
+            axes.text(beyond * x, beyond * y, label, color=DARK, alpha=opacity, ha="center", va="center", zorder=5,
+                      fontsize=fontsize)  # fmt: skip
+        elif z > 0 and window.contains(x, y):
+            axes.plot(x, y, "+", color=DARK, markersize=7, zorder=4)
+            axes.annotate(label, (x, y), xytext=(4, 4), textcoords="offset points", color=DARK, zorder=9)
 
 
-def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats]) -> None:
-    """Draw the level curves of a function of direction on the near side of the sphere."""
-    line = np.linspace(-1.0, 1.0, FINEST)
-    x, y = np.meshgrid(line, line)
+def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
+    """Draw the level curves of a function of direction on the near side of the sphere; return whether there are any."""
+    line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
+    x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
     depth = 1.0 - x * x - y * y
     z = np.sqrt(np.where(depth > 0, depth, np.nan))
     near = np.stack([x, y, z], axis=-1) @ view
     near_values, beyond = value(near), value(-near)
-    levels = np.nanquantile(
-        [near_values, beyond], np.linspace(0.0, 1.0, CURVES + 2)[1:-1]
-    )  # equal areas between curves
-    if levels[-1] - levels[0] > 1e-9 * abs(levels[-1]):
+    both_sides = [near_values, beyond] if window.is_whole else [near_values]
+    levels = np.nanquantile(both_sides, np.linspace(0.0, 1.0, CURVES + 2)[1:-1])  # equal areas between curves
+    has_levels = bool(levels[-1] - levels[0] > 1e-9 * abs(levels[-1]))
+    if has_levels:
         axes.contour(x, y, near_values, levels=levels, colors=FAINT, linewidths=0.7, zorder=2)
+    return has_levels
 
 
-def _path(axes: Any, points: Floats, front: NDArray[np.bool_] | None = None) -> None:
-    """Draw a path in the plane, points of shape (n, 2), coloured from dark at its start to light at its end."""
+def _path(
+    axes: Any, points: Floats, gaps: NDArray[np.bool_], front: NDArray[np.bool_] | None = None, width: float = 1.3
+) -> None:
+    """Draw a path in the plane, points of shape (n, 2), coloured from dark at its start to light at its end.
+
+    ``gaps`` marks the points that are too far from the next one to be joined with it; if there are many, the points are
+    not joined at all. ``front`` marks the points in front of the sphere.
+    """
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 
-    colours = colormaps["viridis"](np.linspace(0.0, 0.82, max(len(points) - 1, 1)))
-    segments = np.stack([points[:-1], points[1:]], axis=1)
-    if front is not None:
-        colours[~front[:-1], 3] = BACK
-    lines = LineCollection(list(segments), colors=colours, linewidths=1.3, capstyle="round", zorder=6)
-    lines.set_rasterized(len(segments) > MOST_VECTORS)
-    axes.add_collection(lines)
+    count = len(points)
+    near = np.ones(count, dtype=bool) if front is None else front
+    shades = np.arange(count) * SHADES // max(count, 1)
+    changes = (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0) | gaps[:-1]
+    starts = np.flatnonzero(np.concatenate([[True], changes]))
+    colours = colormaps["viridis"](0.82 * shades / (SHADES - 1))
+    strong = colours[:, :3].copy()
+    colours[~near, :3] = 1.0 - BACK_PATH * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
+    many = count > MOST_VECTORS
+    if np.mean(gaps) < MOST_GAPS:
+        stops = np.append(starts[1:], count)
+        ends = np.where(gaps[stops - 1], stops, stops + 1)  # a piece reaches the first point of the next one
+        pieces = [points[start:end] for start, end in zip(starts, ends, strict=True)]
+        for side, depth in ((False, 5), (True, 6)):
+            chosen = [number for number, start in enumerate(starts) if near[start] == side]
+            lines = LineCollection([pieces[number] for number in chosen], colors=colours[starts[chosen]], zorder=depth,
+                                   linewidths=width, capstyle="round")  # fmt: skip
+            lines.set_rasterized(many)
+            axes.add_collection(lines)
+    else:
+        axes.scatter(*points.T, s=0.5, c=colours, linewidths=0.0, zorder=6, rasterized=many)
     for place, marker, name in ((0, "o", "start"), (-1, "s", "end")):
-        axes.plot(*points[place], marker, markersize=5, markerfacecolor=colours[place][:3], markeredgecolor="white",
+        axes.plot(*points[place], marker, markersize=5, markerfacecolor=strong[place], markeredgecolor="white",
                   markeredgewidth=0.8, zorder=8, label=name)  # fmt: skip
+
+
+def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
+    """Return which directions of a path of this extent, rad, are too far from the next one to be joined with it."""
+    steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
+    return np.append(steps > LONGEST * extent, False)
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
@@ -113,7 +200,8 @@ def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels:
     along = np.cross(middle, across)
     along *= np.sign(along[second]) or 1.0
     size, unit = prefixed(extent, "rad")
-    _path(axes, np.stack([directions @ across, directions @ along], axis=1) / size)
+    points = np.stack([directions @ across, directions @ along], axis=1) / size
+    _path(axes, points, _gaps(directions, extent))
     axes.set_xlabel(f"toward {labels[first]} ({unit})")
     axes.set_ylabel(f"toward {labels[second]} ({unit})")
     half = 1.1 * extent / size
@@ -123,20 +211,29 @@ def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels:
 
 
 def draw_directions(
-    axes: Any, vectors: Floats, labels: tuple[str, ...], value: Callable[[Floats], Floats] | None = None
-) -> bool:
-    """Draw the path of the direction of vectors, shape (n, 3); return whether it is drawn on a sphere.
+    axes: Any,
+    vectors: Floats,
+    labels: tuple[str, ...],
+    value: Callable[[Floats], Floats] | None = None,
+    value_note: str = "",
+) -> None:
+    """Draw the path of the direction of vectors, shape (n, 3), on a sphere.
+
+    A path on a small part of the sphere is enlarged, with the whole sphere beside it; a tiny one is drawn on the plane
+    that touches the sphere.
 
     Parameters
     ----------
     axes : matplotlib Axes
-        The matplotlib axes to draw into; their frame is removed when a sphere is drawn.
+        The matplotlib axes to draw into; their frame is removed when a whole sphere is drawn.
     vectors : array, shape (n, 3)
         Vectors of any length; zero vectors are left out.
     labels : tuple of 3 str
         Names of the three axes.
     value : callable, optional
         A function of direction, shape (..., 3) to (...), whose level curves are drawn behind the path.
+    value_note : str
+        The sentence below the drawing that explains the level curves.
     """
     directions = _unit(vectors)
     if not len(directions):  # a body at rest
@@ -148,15 +245,47 @@ def draw_directions(
         extent = float(np.max(np.linalg.norm(directions - middle, axis=1)))
         if STILL < extent < SMALL:
             _plane(axes, directions, middle, extent, labels)
-            return False
-    view = _eye(directions)
-    axes.set_axis_off()
+            return
+    view, window = _close_view(directions) or (_eye(directions), Window())
+    notes = []
+    _sphere(axes, directions, view, labels, window)
+    if value is not None and _levels(axes, view, value, window):
+        notes.append(value_note)
+    if window.is_whole:
+        axes.set_axis_off()
+    else:
+        notes.append(f"parallels every {window.spacing:g}\N{DEGREE SIGN}")
+        axes.set(xticks=[], yticks=[])
+        for spine in axes.spines.values():
+            spine.set(visible=True, color=FAINT)
+        x, y = view[:2] @ directions.T
+        whole = axes.inset_axes((*_empty_corner(x, y, window), INSET, INSET), zorder=10)
+        whole.set_axis_off()
+        _sphere(whole, directions, _eye(directions), labels, Window(half=1.1 * ROOM), is_inset=True)
+    axes.text(0.5, -0.02, "\n".join(notes), transform=axes.transAxes, ha="center", va="top", color=GREY)
+
+
+def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
+    """Return the lower left point, in fractions of the axes, of a place for the inset in the corner with least path."""
+    across = 0.5 + (x - window.centre[0]) / (2.0 * window.half)
+    up = 0.5 + (y - window.centre[1]) / (2.0 * window.half)
+
+    def crowd(corner: tuple[float, float]) -> int:
+        middle = np.array(corner) + 0.5 * INSET
+        return int(
+            np.count_nonzero((np.abs(across - middle[0]) < 0.6 * INSET) & (np.abs(up - middle[1]) < 0.6 * INSET))
+        )
+
+    far = 1.0 - INSET
+    return min(((0.0, far), (far, far), (0.0, 0.0), (far, 0.0)), key=crowd)
+
+
+def _sphere(axes: Any, directions: Floats, view: Floats, labels: tuple[str, ...], window: Window,
+            is_inset: bool = False) -> None:  # fmt: skip
+    """Draw a path on the part of the sphere in a window."""
     axes.set_aspect("equal")
-    axes.set_xlim(-ROOM, ROOM)
-    axes.set_ylim(-ROOM, ROOM)
-    _globe(axes, view, labels)
-    if value is not None:
-        _levels(axes, view, value)
+    axes.set_xlim(window.centre[0] - window.half, window.centre[0] + window.half)
+    axes.set_ylim(window.centre[1] - window.half, window.centre[1] + window.half)
+    _globe(axes, view, labels, window, fontsize=7.0 if is_inset else None)
     x, y, z = view @ directions.T
-    _path(axes, np.stack([x, y], axis=1), z >= 0)
-    return True
+    _path(axes, np.stack([x, y], axis=1), _gaps(directions), z >= 0, 0.7 if is_inset else 1.3)

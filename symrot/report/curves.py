@@ -1,0 +1,182 @@
+"""Curves over time in one panel: a filled band where they are too fast to be seen, dashes where one hides another."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.report.picture import COLOURS
+
+__all__ = ["BAND_NOTE", "COLUMNS_PER_INCH", "columns_of", "draw_curves", "envelope", "hidden_parts", "is_too_fast"]
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+COLUMNS_PER_INCH = 150  # pixels of a printed figure
+LEAST_PER_PERIOD = 5.0  # columns: a faster oscillation would be a solid block and is drawn as a band
+PERIODS_IN_BIN = 2.0  # a bin that holds whole periods contains their extremes
+WIDTHS = (2.0, 1.6, 1.2, 0.9)  # points: later curves are thinner and drawn on top, so that close curves stay visible
+NEAR = 2.5  # columns: a curve this close to an earlier one hides it
+LONG = 0.04  # fraction of the panel: shorter overlaps are mere crossings
+DASH = 5.0  # points
+ROUNDING = 1e-9  # smaller changes of a curve, relative to its size, are rounding errors
+HATCHES = ("", "///", "\\\\\\", "...")  # later bands are hatched, so that equal bands all stay visible
+BAND_NOTE = "filled: least to greatest"
+
+
+def columns_of(axes: Any) -> tuple[float, float]:
+    """Return the width and height of axes of matplotlib in columns, of which an inch has 150."""
+    box, dpi = axes.get_window_extent(), axes.figure.dpi
+    return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
+
+
+def _turns(values: Floats) -> int:
+    """Return how often a curve changes between rising and falling."""
+    slopes = np.sign(np.diff(values))
+    slopes = slopes[slopes != 0]
+    return int(np.count_nonzero(np.diff(slopes)))
+
+
+def is_too_fast(t: Floats, values: Floats, columns: float, visible: float) -> bool:
+    """Return whether a curve oscillates too fast to be drawn as a line.
+
+    Parameters
+    ----------
+    t, values : arrays, shape (n,)
+        Times in increasing order, and the values of the curve there.
+    columns : float
+        The width of the panel in pixels.
+    visible : float
+        The least change that can be seen, in the unit of the values; smaller oscillations, such as rounding errors, do
+        not count.
+    """
+    if 0.5 * _turns(values) * LEAST_PER_PERIOD <= columns:
+        return False
+    _, low, high = envelope(t, values, columns)
+    return bool(np.median(high - low) > visible)
+
+
+def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats, Floats]:
+    """Return a band that contains every sample of a fast curve.
+
+    Parameters
+    ----------
+    t, values : arrays, shape (n,)
+        Times in increasing order, and the values of the curve there.
+    columns : float
+        The width of the panel in pixels. A bin is at least one pixel wide and holds about two periods of the curve.
+
+    Returns
+    -------
+    tuple of 3 arrays, shape (m,)
+        Times, and the lower and the upper bound there; both bounds are straight between the times.
+    """
+    periods = max(0.5 * _turns(values), 1.0)
+    count = int(max(1, min(columns, periods / PERIODS_IN_BIN, len(t) // 2)))
+    edges = np.linspace(t[0], t[-1], count + 1)
+    starts = np.searchsorted(t, edges[:-1], side="left")
+    starts, places = np.unique(starts, return_index=True)  # a bin without samples joins the one after it
+    edges = np.append(edges[places], t[-1])
+    bounds = []
+    for reduction in (np.minimum, np.maximum):
+        inside = reduction.reduceat(values, starts)
+        following = np.append(inside[1:], inside[-1])
+        bounds.append(np.concatenate([inside[:1], reduction(inside, following)]))
+    return edges, bounds[0], bounds[1]
+
+
+def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: float) -> list[Mask]:
+    """Return for each curve where it would hide an earlier one.
+
+    Parameters
+    ----------
+    curves : sequence of arrays, shape (n,)
+        The curves at the same evenly spaced times, in the order in which they are drawn; NaN where one is interrupted.
+    size : tuple of 2 floats
+        Width and height of the panel in columns.
+    height : float
+        Height of the panel in the unit of the curves.
+    """
+    parts = []
+    for number, curve in enumerate(curves):
+        hidden = np.zeros(len(curve), dtype=bool)
+        for earlier in curves[:number]:
+            with np.errstate(invalid="ignore"):
+                near = np.abs(curve - earlier) * size[1] <= NEAR * height
+            hidden |= _long_runs(near, LONG)
+        parts.append(hidden)
+    return parts
+
+
+def _long_runs(mask: Mask, fraction: float) -> Mask:
+    """Return the mask without runs of True shorter than a fraction of its length."""
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    long = np.zeros(len(mask), dtype=bool)
+    for start, stop in steps.reshape(-1, 2):
+        long[start:stop] = stop - start >= max(2.0, fraction * len(mask))
+    return long
+
+
+def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
+    """Yield the visible and the hidden part of a curve, the longer first, each with NaN elsewhere."""
+    grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
+    grown[1:] |= hidden[:-1]
+    grown[:-1] |= hidden[1:]
+    parts = [(np.where(grown, values, np.nan), True), (np.where(hidden, np.nan, values), False)]
+    parts.sort(key=lambda part: -np.count_nonzero(np.isfinite(part[0])))
+    return (part for part in parts if np.isfinite(part[0]).any())
+
+
+def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[str], colours: Sequence[str] = COLOURS,
+                widths: Sequence[float] = WIDTHS) -> None:  # fmt: skip
+    """Draw curves over time, each of shape (n,) with NaN where it is interrupted, and name them for a legend.
+
+    A curve that oscillates faster than the pixels is drawn as a band between its extremes. Where a curve would hide an
+    earlier one, it is dashed. The linear or logarithmic scale of the axes must be set before.
+    """
+    size = columns_of(axes)
+    scale = np.log10 if axes.get_yscale() == "log" else np.asarray
+    heights = [scale(curve) for curve in curves]
+    extremes = [(np.nanmin(curve), np.nanmax(curve)) for curve in heights if np.isfinite(curve).any()]
+    height = max((high for _, high in extremes), default=1.0) - min((low for low, _ in extremes), default=0.0)
+    height = max(height, ROUNDING * max((max(abs(low), abs(high)) for low, high in extremes), default=0.0))
+    fast = [_is_band(t, curve, size, height) for curve in heights]
+    slow = [number for number in range(len(curves)) if not fast[number]]
+    hidden = hidden_parts([heights[number] for number in slow], size, 1.1 * height or 1.0)
+    parts = dict(zip(slow, hidden, strict=True))
+    for number, (curve, name) in enumerate(zip(curves, names, strict=True)):
+        colour, width = colours[number % len(colours)], widths[min(number, len(widths) - 1)]
+        if fast[number]:
+            _draw_band(axes, t, curve, name, size[0], colour, HATCHES[sum(fast[:number]) % len(HATCHES)])
+            continue
+        if not np.isfinite(curve).any():
+            axes.plot([], [], " ", label=name)
+            continue
+        dashes = (0, (DASH / width, (DASH + number) / width))
+        label = name
+        for part, is_hidden in _pieces(curve, parts[number]):
+            axes.plot(t, part, color=colour, linewidth=width, label=label, linestyle=dashes if is_hidden else "-",
+                      dash_capstyle="butt")  # fmt: skip
+            label = f"_{name}"  # an underscore keeps the second part out of the legend
+    if any(fast):
+        axes.plot([], [], " ", label=BAND_NOTE)
+    axes.grid(True)
+
+
+def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
+    """Return whether a curve is drawn as a band; times out of order have no bins, and their curve stays a line."""
+    known = np.isfinite(curve)
+    if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
+        return False
+    return is_too_fast(t[known], curve[known], size[0], 2.0 * NEAR * height / size[1])
+
+
+def _draw_band(axes: Any, t: Floats, curve: Floats, name: str, columns: float, colour: Any, hatch: str) -> None:
+    from matplotlib.colors import to_rgba
+
+    known = np.isfinite(curve)
+    times, low, high = envelope(t[known], curve[known], columns)
+    face = "none" if hatch else to_rgba(colour, 0.3)
+    axes.fill_between(times, low, high, facecolor=face, edgecolor=colour, linewidth=0.8, hatch=hatch, zorder=1.8,
+                      label=name)  # fmt: skip
