@@ -92,7 +92,7 @@ LESSONS = {
         mistake=Mistake(
             "The height of the axis is a cosine. Its rate has a minus sign, which students lose.",
             "diff(cos(theta(t)), t) == sin(theta(t))*diff(theta(t), t)",
-            repair=1,
+            repair=0,
             lesson="Where the nutation grows the axis sinks.",
         ),
         scene="heavy_top_loops",

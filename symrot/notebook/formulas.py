@@ -21,7 +21,7 @@ def derivation(page: Page) -> str:
     """Return the page of a derivation with its figures."""
     whole = illustrated(page) if isinstance(page, Derivation) else page
     text = inline(markdown(whole))
-    for item in whole.items:
+    for item in (*whole.opening, *whole.items):
         if isinstance(item, Figure):
             text = text.replace(f"![{item.title}]({item.file})", drawing(item.title, item.svg()))
     return text

@@ -141,7 +141,8 @@ def test_a_pool_maps_a_function_that_returns_a_trajectory():
             same(trajectory, motion_from(rate))
 
 
-def test_a_torque_that_cannot_be_pickled_is_refused_in_a_sentence_and_can_be_copied():
+def test_a_torque_that_cannot_be_pickled_is_refused_in_a_sentence_and_can_be_copied(monkeypatch):
+    monkeypatch.delitem(sys.modules, "cloudpickle", raising=False)  # which pickles local functions, if it is loaded
     propagator = symrot.propagator("t_handle", torque=lambda t, omega, quaternion: -1e-6 * omega, max_step=1)
     with pytest.raises(pickle.PicklingError, match="torque: expected a function that can be pickled, such as one"):
         pickle.dumps(propagator)

@@ -82,6 +82,6 @@ def test_each_motion_runs_the_constructor_of_its_base():
 
 def test_euler_angles_need_a_sequence():
     trajectory = symrot.propagate("t_handle")
-    with pytest.raises(InputError, match=r"expected an Euler sequence as output\.sequence"):
+    with pytest.raises(InputError, match=r"expected an Euler sequence, such as .ZXZ., as output\.sequence"):
         trajectory.quantity("euler")
     assert trajectory.euler("ZXZ").shape == (len(trajectory), 3)

@@ -8,12 +8,14 @@ from fractions import Fraction
 from functools import partial, reduce
 from typing import NamedTuple
 
+from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.claim.vectors import is_components
 from symrot.errors import InputError
 from symrot.exact import normal_form
+from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["NamedFormula", "Solve", "named_formula", "open_formula", "related_formula"]
@@ -152,7 +154,9 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
     is_whole = (left, right) == claim.relation[1:]  # no common factor was left out
-    is_open = (is_whole and _is_constraint(left, right, letters)) or _has_own_letters(letters)
+    is_open = (is_whole and _is_constraint(left, right, letters)) or (
+        _has_own_letters(letters) and _depends_on_own_letters(claim)
+    )
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
 
 
@@ -218,6 +222,12 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
     Such an equation determines its quantities; no one writes it as an identity.
     """
     left, right = letters
+    return bool(left - right) and bool(right - left)
+
+
+def _depends_on_own_letters(claim: Claim) -> bool:
+    """Return whether the value of each side depends on an atom on which the other does not, after cancellation."""
+    left, right = (atoms_of(flatten(side)[0]) for side in (claim.equation.left, claim.equation.right))
     return bool(left - right) and bool(right - left)
 
 

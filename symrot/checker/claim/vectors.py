@@ -24,7 +24,7 @@ __all__ = [
 MARK = "\N{RIGHTWARDS ARROW}"
 TIME = Node("name", "t")
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of the vectors of a basis: these are the axes if a text has at least two of them as vectors."""
+"""Names of the vectors of a basis: these are the axes if a text has two of them, and, but for i, no other vector."""
 
 AXES = ("xyz", "123", "1234", "0123")
 """The last letters of the names of the components of vectors; of four for a quaternion."""
@@ -133,7 +133,7 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
     places = {
         name: place
         for basis in BASES
-        if len({*names} & {*basis}) > 1 and not moving & {*basis}
+        if len({*names} & {*basis}) > 1 and not moving & {*basis} and (basis[0] == "i" or {*names} <= {*basis})
         for place, name in enumerate(basis)
     }
     axes = {name for name in names if Vector(name, unit=names[name]).is_axis} | {*places}

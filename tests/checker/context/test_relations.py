@@ -132,7 +132,7 @@ def test_the_angles_of_a_free_body_are_told_apart_by_words(text, verdict, where)
     ("I_zz = m (a² + b²)/3", "false", {"body": "box of sides a, b, c about its centre"}),
     ("I_zz = m (a² + b²)/5", "true", {"body": "ellipsoid with semi-axes a, b, c"}),
     ("I_zz = m (a² + b²)/20", "true", {"body": "ellipsoid of diameters a, b, c"}),
-    ("I_zz = m (a² + b²)/20", "recognised", {}), ("I_zz = m (a² + b²)/6", "doubtful", {}),
+    ("I_zz = m (a² + b²)/20", "recognised", {}), ("I_zz = m (a² + b²)/6", "recognised", {}),
     ("I = m d²/8", "recognised", {"body": "cylinder"}), ("I = m l²/3", "true", {"body": "rod of half-length l about its centre"}),
 ])  # fmt: skip
 def test_moments_may_be_written_with_other_dimensions(text, verdict, context):
