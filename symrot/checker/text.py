@@ -125,8 +125,8 @@ def verdict_on_readings(
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if _is_unknown(verdicts[0]) and not first:
         first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "doubtful"), 0)
-    if _is_unknown(verdicts[0]):
-        verdicts.insert(0, verdicts.pop(first))  # a known formula, or one near it, is likelier than an unknown one
+    if _is_unknown(verdicts[0]) or (first and verdicts[0][1].verdict == "doubtful"):
+        verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than one near it or an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
     if refusal is not None and not of_usual:

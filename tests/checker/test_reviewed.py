@@ -81,3 +81,8 @@ def test_verdict_for_a_body(text, body, verdict):
 )
 def test_no_fault_in_a_formula_for_another_quantity(text, verdict):
     assert symrot.check(text).verdict == verdict
+
+
+def test_a_reading_that_is_a_known_formula_beats_one_that_is_only_near_to_it():
+    """The components of a vector in rotated axes, Goldstein ch. 4.7: r' is a name here, and no rate."""
+    assert symrot.check("r' = r cos Phi + n (n . r) (1 - cos Phi) + (r x n) sin Phi").verdict == "recognised"
