@@ -21,7 +21,7 @@ from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
 from symrot.scene.torque import Torque
 
-__all__ = ["changed", "replaces_shapes"]
+__all__ = ["Path", "changed", "path_of", "replaces_shapes"]
 
 Path = tuple[str | int, ...]
 
@@ -138,7 +138,9 @@ def _place(scene: _Scene, key: str) -> Place:
         return Place(SHORT[key])
     if key in RATES:
         return Place(("initial", "omega"), RATES.index(key))
-    path = _path(key)
+    path = path_of(key)
+    if not path:
+        raise InputError(f"expected a name such as body.mass or torque[0].weight, got {show(key)}")
     if path[0] in TABLES:
         return Place(path)
     places = [*islice(_torque_places(scene, key), 1), *_body_places(scene, key)]
@@ -154,8 +156,8 @@ def _place(scene: _Scene, key: str) -> Place:
     )
 
 
-def _path(key: str) -> Path:
-    """Return the steps of a path: ``torque[0].weight`` is ``("torque", 0, "weight")``."""
+def path_of(key: str) -> Path:
+    """Return the steps of a path, ``("torque", 0, "weight")`` for ``torque[0].weight``; () if the text is no path."""
     steps: list[str | int] = []
     position = 0
     for match in _STEP.finditer(key):
@@ -164,9 +166,7 @@ def _path(key: str) -> Path:
             break
         steps.append(match[1] if match[1] else int(match[2]))
         position = match.end()
-    if position != len(key) or not steps or isinstance(steps[0], int):
-        raise InputError(f"expected a name such as body.mass or torque[0].weight, got {show(key)}")
-    return tuple(steps)
+    return tuple(steps) if position == len(key) and steps and not isinstance(steps[0], int) else ()
 
 
 def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:

@@ -6,7 +6,6 @@ ensemble as they are. For a number in the file, the scene is read again with eac
 depends on it follows: the mass of a shape changes its inertia, its centre of mass and its weight.
 """
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -15,6 +14,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
 from symrot.ensemble.variation import FIXED, PLACES, constant_places
 from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
+from symrot.scene.changes import Path, path_of
 from symrot.scene.scene import Scene
 
 __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
@@ -22,10 +22,8 @@ __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
 OMEGA = ("omega_1", "omega_2", "omega_3")
 VARIED_TABLES = ("body", "initial", "torque")
 FROM_BODY = {"gravity": ("weight", "center_of_mass")}  # fields of a torque that may depend on the body
-_TOKEN = re.compile(r"\.?([A-Za-z_][A-Za-z0-9_-]*)|\[(\d{1,6})\]")
 
 Content = Mapping[str, Any]
-Path = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -77,15 +75,9 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
 
 
 def _path(name: str) -> Path:
-    """Return the path that a name such as ``body.part[0].radius`` describes, or () if the name is not a path."""
-    tokens, place = list[str | int](), 0
-    while place < len(name):
-        match = _TOKEN.match(name, place)
-        if match is None:
-            return ()
-        tokens.append(match[1] if match[1] is not None else int(match[2]))
-        place = match.end()
-    return tuple(tokens) if len(tokens) > 1 and tokens[0] in VARIED_TABLES else ()
+    """Return the path that a name such as ``body.part[0].radius`` describes, or () if nothing at it can vary."""
+    path = path_of(name)
+    return path if len(path) > 1 and path[0] in VARIED_TABLES else ()
 
 
 def _is_fixed(name: str) -> bool:

@@ -104,4 +104,4 @@ def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajecto
             scene = replace(scene, initial=_state_at(scene, start))
         scene = replace(scene, span=scene.span._replace(start=start, stop=stop))
         return scene, motion if motion.has_external_torque else None
-    return (motion if isinstance(motion, Scene) else load_scene(motion)), None
+    return load_scene(motion), None

@@ -8,7 +8,7 @@ import symrot
 from symrot.errors import InputError
 from symrot.planning.general_structure import switched
 from symrot.planning.plan import Plan, make_plan
-from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.scene import SceneSource, load_scene
 
 if TYPE_CHECKING:
     from symrot.workshop.kernel_text import KernelText
@@ -75,10 +75,6 @@ class Emitted(_Texts):
         return self.text.certificate(self.bounds)
 
 
-def _scene(source: SceneSource) -> Scene:
-    return source if isinstance(source, Scene) else load_scene(source)
-
-
 def plan(scene: SceneSource) -> Plan:
     """Return the plan of a scene: each item that is computed or skipped, and why; :func:`explain` prints it as a table.
 
@@ -106,7 +102,7 @@ def plan(scene: SceneSource) -> Plan:
     >>> symrot.plan("tumbling_prism").scene.name
     'tumbling_prism'
     """
-    loaded = _scene(scene)
+    loaded = load_scene(scene)
     return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
 
 

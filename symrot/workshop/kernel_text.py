@@ -268,7 +268,7 @@ def _library_text(name: str) -> LibraryText:
 
 def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
     """Return the texts of the kernel of a scene, of a shipped scene given by its name, or of a scene file."""
-    return SceneText(scene if isinstance(scene, Scene) else load_scene(scene), jacobian)
+    return SceneText(load_scene(scene), jacobian)
 
 
 def scene_kernel_name(scene: str) -> str:

@@ -72,7 +72,7 @@ def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian:
     if jacobian:
         raise InputError(f"jacobian: expected no derivatives of a step, got {', '.join(jacobian)} with the step {step}")
     method = step_method(step, order)
-    return StepText(scene if isinstance(scene, Scene) else load_scene(scene), method)
+    return StepText(load_scene(scene), method)
 
 
 class StepText(KernelText):
