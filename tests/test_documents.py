@@ -193,7 +193,7 @@ def test_the_rooms_are_in_the_order_of_their_imports():
 
 
 def test_counts_in_the_documents_are_those_of_the_package():
-    assert "45 derivations" in PAGES["README.md"] and len(derivation_names()) == 45
+    assert "45 lessons" in PAGES["README.md"] and len(derivation_names()) == 45
     assert "library of 232 kernels" in PAGES["docs/engineers.md"] and len(kernel_names()) == 232
 
 
