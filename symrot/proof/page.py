@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Protocol
 
 from sympy import Expr
@@ -131,8 +132,13 @@ class Figure:
         return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
 
     def svg(self) -> str:
-        """Return the figure as a document of SVG."""
-        return self.draw().svg(self.title, self.description)
+        """Return the figure as a document of SVG; it is drawn once per process."""
+        return _svg(self)
+
+
+@cache
+def _svg(figure: Figure) -> str:
+    return figure.draw().svg(figure.title, figure.description)
 
 
 @dataclass

@@ -5,6 +5,7 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import fields
 from difflib import unified_diff
+from functools import cache
 from pathlib import Path
 from textwrap import wrap
 
@@ -80,6 +81,12 @@ def illustrated(page: Page) -> PrintedPage:
     return PrintedPage(**{each.name: getattr(lesson, each.name) for each in fields(Page)})
 
 
+@cache
+def _page(name: str) -> PrintedPage:
+    """Return the page of a derivation with its figures and its lesson; it is made once per process."""
+    return illustrated(derivation(name))
+
+
 def pages(say: Say = _quiet) -> dict[str, str]:
     """Return a map from file name to text of the printed pages of all derivations, and of their figures.
 
@@ -88,7 +95,7 @@ def pages(say: Say = _quiet) -> dict[str, str]:
     derived = {}
     for name in names():
         say(f"deriving {name} ..")
-        derived[name] = illustrated(derivation(name))
+        derived[name] = _page(name)
     lines = [
         f"# {TITLE}",
         "",
@@ -128,9 +135,7 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
         raise InputError(f"form: expected {' or '.join(FORMS)}, got {form!r}")
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    chapters = {
-        chapter: [illustrated(derivation(name)) for name in members] for chapter, members in READING_ORDER.items()
-    }
+    chapters = {chapter: [_page(name) for name in members] for chapter, members in READING_ORDER.items()}
     written = []
     for name, content in FORMS[form](chapters).items():
         path = directory / name
