@@ -3,6 +3,7 @@
 import gc
 import os
 import shlex
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
@@ -16,6 +17,10 @@ from mpmath import mp
 from symrot.build import cache as library
 
 os.environ.setdefault("SYMPY_CACHE_SIZE", "100000")  # results of SymPy in memory, for derivations that repeat them
+os.environ.pop(
+    "PYTHONDONTWRITEBYTECODE", None
+)  # the tests start hundreds of processes: each would compile symrot again
+sys.dont_write_bytecode = False
 
 
 @pytest.hookimpl(optionalhook=True, tryfirst=True)
