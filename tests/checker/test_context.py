@@ -18,6 +18,7 @@ FREE = "free symmetric body with moments I_1, I_1, I_3"
 FIXED = ["T = kinetic energy of rotation", "I = moment of inertia about the fixed axis"]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("text", "verdict", "context"), [
     ("I_zz = m r^2/2", "true", {"body": CYLINDER}),
     ("I_xx = m (3 r^2 + h^2)/12", "true", {"body": f"{CYLINDER} about its centre of mass"}),
@@ -122,6 +123,7 @@ def test_words_about_a_body_that_are_not_understood_leave_a_claim_open(text, bod
     assert "these words are not understood" in verdict.reason and words in verdict.reason
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("text", "body", "verdict", "repair"), _with_campaign(
     [("I = m d^2/8", "solid cylinder of diameter d", "recognised", ""),
      ("I = m d^2/2", "solid cylinder of diameter d", "doubtful", "I = m*d^2/8"),

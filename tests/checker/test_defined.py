@@ -349,6 +349,7 @@ def test_a_long_sum_is_read():
     assert verdict_of(" + ".join(["x"] * 2000) + " == 2000*x") == "true"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "verdict", "condition"), [
     ("atan2(sin(a), cos(a)) == a", "conditional", "-pi < a <= pi"),
     ("atan2(cos(t)*sin(p), cos(t)*cos(p)) == p", "conditional", "cos(t) > 0 and -pi < p <= pi"),

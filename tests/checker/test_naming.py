@@ -94,6 +94,7 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, ca
     assert "instead:" in capsys.readouterr().out
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", [
     "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
     "Omega == a*g*b/(c*d)", "omega == v/r", "k == J/m", "T == 4*pi**2*J/(m*g*d)", "I_0 == C*omega_3", "x == C*omega_3", "y == m*g/r",
@@ -160,6 +161,7 @@ def test_a_fault_in_a_formula_for_a_multiple_or_a_rate_is_named(claim, repaired)
     assert verdict.repairs[0].text.startswith(repaired)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("claim", [
     "tan(theta) = a*b/c", "1/2 m v^2 = m g h", "m x'' + c x' + k x = F_0",
     "M dt = I dω", "tan(beta) = cos(theta)*tan(alpha)",
@@ -177,6 +179,7 @@ def test_a_wrong_identity_stays_false(claim):
     assert symrot.check(claim).verdict == "false"
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("claim", [
     "I_1 ω̇_1 + ω_2 ω_3 (I_2 − I_3) = N_1", r"I_1\dot\omega_1 = \omega_2\omega_3(I_3-I_2)",
     "L_x = I_xx omega_x + I_xy omega_y + I_yz omega_z", r"\omega_3 = \dot\theta_1\sin\theta_2 + \dot\theta_2",
@@ -239,6 +242,7 @@ def test_chains_in_latex_are_decided_link_by_link():
     assert symrot.check(r"I_{xx} = I_{yy} = \frac{1}{12} m (2 r^2 + h^2)").verdict == "doubtful"  # no body has both
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "name"), [
     ("I_G ω₁ + ΣM Δt = I_G ω₂", "relation for impulse and angular momentum about one axis"),
     ("λ_1 Ω² cos θ − λ_3 ω_3 Ω + M g R = 0", "relation for steady precession of a heavy top"),
@@ -266,6 +270,7 @@ def test_relations_and_formulas_that_books_name_are_recognised(claim, name):
     assert any(reading.name.startswith(name) for reading in verdict.recognised_as)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
     "I_G ω₁ − ΣM Δt = I_G ω₂", "λ_1 Ω² cos θ + λ_3 ω_3 Ω + M g R = 0", r"\omega_3^2 = \frac{2MglI_1}{I_3^2}",
     "a = (m₁ + m₂) g/(m₁ + m₂ + I/R²)", "θ = θ₀ + ω₀t + αt²", "T = 2π √(k/I)", "φ̇ = I₃ω₃/I₁",
@@ -277,6 +282,7 @@ def test_wrong_relations_and_formulas_are_not_recognised(claim):
     assert symrot.check(claim).verdict != "recognised"
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
     "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "a = ω r", "I_G = I_O + m d²", "k_G² = k_O² + d²",
     "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",

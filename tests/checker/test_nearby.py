@@ -38,6 +38,7 @@ def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
     assert symrot.check(repaired).verdict == "recognised"
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
     "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k", "v = omega r",
     "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)", "a = omega^2 r",
@@ -123,6 +124,7 @@ def test_the_campaign_compares_diagnoses_and_repairs_with_the_corpus():
     assert not offers((), "T = 1")
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("claim", ["I_zz = π ρ h D^4/32", "I = m(a²+b²)/6", "I = m D²/2", "I = m a²/20"])
 def test_a_moment_of_an_unknown_body_is_not_accused(claim):
     """The moments of a cylinder by its diameter, of a triangular plate about its right corner, of a tetrahedron."""
@@ -140,6 +142,7 @@ def test_a_fault_in_an_equation_is_found_from_the_known_relation(claim, code, re
     assert (verdict.diagnosis.code, verdict.repairs[0].text) == (code, repaired)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("claim", "verdict"), [
     ("T = 1/2 (A p^2 + B q^2 + C q^2)", "doubtful"),  # a component of omega that occurs twice
     ("J_1 w_1' = w_2 w_3 (J_2 - J_1)", "doubtful"),  # no book writes J_1 for J_3

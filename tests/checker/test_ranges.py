@@ -40,6 +40,7 @@ def test_conditions_are_written_as_a_book_writes_them(text, signs):
     assert range_text(signs) == text
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "condition"), [
     ("(1 - x**2)/sqrt((x - 1)**2) == -1 - x", "x > 1"), ("tan(x/2) == sqrt((1 - cos(x))/(1 + cos(x)))", "sin(x) > 0"),
     ("abs(x)*abs(y) == x*y", "x*y >= 0"), ("acos(1 - 2*x**2) == 2*asin(x)", "0 <= x <= 1"),

@@ -55,6 +55,7 @@ def test_verdict(text):
     assert symrot.check(text, repair=False).verdict == WITHOUT_CONTEXT[text]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("text", "body", "verdict"),
     [

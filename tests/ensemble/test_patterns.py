@@ -19,6 +19,7 @@ def ensemble(parameters, scene=SCENE):
     return symrot.propagate_ensemble(symrot.Scene.from_dict(scene), parameters=parameters)
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize(
     "parameters",

@@ -49,6 +49,7 @@ def test_what_is_needed_before_has_no_circle():
     assert reached == set(names())
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", names())
 def test_a_mistake_is_refuted_and_its_repair_is_true(name):
     mistake = LESSONS[name].mistake

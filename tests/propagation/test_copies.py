@@ -51,6 +51,7 @@ def same(one, other):
     assert [item.drift for item in one.invariants] == [item.drift for item in other.invariants]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     "method, way", [*((method, "pickle") for method in PROPAGATORS), ("exact", "copy"), ("taylor", "deepcopy")]
 )

@@ -99,6 +99,7 @@ WRONG = (
 )  # fmt: skip
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "outcome", "repair"), WRONG)
 def test_a_wrong_formula_is_found_and_repaired_in_the_same_notation(claim, outcome, repair):
     verdict = symrot.check(claim)

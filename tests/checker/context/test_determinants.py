@@ -29,6 +29,7 @@ def test_a_determinant_is_recognised_with_either_sign(claim, sequence):
     assert verdict.recognised_as[0].name.startswith(f"determinant of the {sequence} rate Jacobian")
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", [
     "det T = -2 sin theta", "det T = sin^2 theta", r"\det E = \cos 2\theta", "det B = sin(theta/2)", r"\det T = 3\cos\beta",
 ])  # fmt: skip

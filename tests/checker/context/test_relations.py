@@ -16,6 +16,7 @@ TOP, FREE = {"body": "heavy symmetric top"}, "free symmetric body"
 PLUS, MINUS = "I_xy, I_xz = ∫ xy dm", "I_xy, I_xz = -∫ xy dm"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("text", "verdict", "context"), [
     ("ψ̇ = ω_z - φ̇ cos θ", "true", ZXZ),
     ("psi' = omega_3 + phi' cos theta", "false", ZXZ),
@@ -66,6 +67,7 @@ def test_yaw_is_the_angle_about_z_in_every_sequence_of_three_axes():
     assert not [*orders(NO_CONTEXT, ["alpha", "theta"], "ZXZ")]  # no book uses these together
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("text", "verdict", "context"), [
     ("L_x = I_xx omega_x - I_xy omega_y - I_xz omega_z", "true", {"where": [PLUS]}),
     ("L_x = I_xx omega_x + I_xy omega_y + I_xz omega_z", "false", {"where": [PLUS]}),
@@ -97,6 +99,7 @@ def test_both_signs_of_products_in_one_context_are_refused():
         symrot.check("L_x = I_xy omega_y + I_xz omega_z", where=["I_xy = ∫ xy dm", "I_xz = -∫ xz dm"])
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("text", "verdict", "context"), [
     ("p_φ = I_1 φ' sin²θ + I_3 ω_3 cos θ", "recognised", {}),
     ("p_φ = I_1 φ' sin²θ + I_3 s cos θ", "recognised", TOP),
@@ -123,6 +126,7 @@ def test_the_angles_of_a_free_body_are_told_apart_by_words(text, verdict, where)
     assert symrot.check(text).verdict == "recognised"
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(("text", "verdict", "context"), [
     ("I = m k²", "recognised", {}), ("I = m k²", "true", {"where": ["k = radius of gyration"]}),
     ("I = m k", "false", {"where": ["k = radius of gyration"]}), ("I_G = m k_G²", "recognised", {}),
