@@ -21,9 +21,9 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Scene, SceneSource, load_scene
-from symrot.scene.tables import QUANTITIES, TOLERANCES
+from symrot.scene.tables import QUANTITIES, read_tolerance
 
-__all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble", "read_tolerance"]
+__all__ = ["Ensemble", "EnsembleMember", "EnsembleStats", "propagate_ensemble"]
 
 UNAVERAGED = ("quaternion", "dcm", "euler")  # attitudes: the mean of their components is no attitude
 
@@ -361,11 +361,3 @@ def propagate_ensemble(
     aim = own if tolerance is None else read_tolerance(tolerance)
     problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
     return Ensemble(problem, follow(problem, method), perf_counter() - began)
-
-
-def read_tolerance(tolerance: float) -> float:
-    low, high = TOLERANCES
-    value = number.read(tolerance, "tolerance")
-    if not low <= value <= high:
-        raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return float(value)

@@ -25,6 +25,7 @@ from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
+from symrot.scene.attitude import refuse_two
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
@@ -298,9 +299,8 @@ def read_variation(
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
+    refuse_two(attitude, quaternion)
     if attitude is not None:
-        if quaternion is not None:
-            raise InputError("attitude: expected attitude or quaternion, got both")
         quaternion = _quaternions(attitude)
     places = constant_places(scene)
     arrays: dict[str, Floats] = {}

@@ -12,7 +12,9 @@ from symrot.planning.general_structure import switched
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.trajectory import Trajectory
+from symrot.scene.attitude import refuse_two
 from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import read_tolerance
 
 __all__ = ["propagate", "propagator"]
 
@@ -101,7 +103,7 @@ def propagator(
     (3, 3)
     """
     scene = _with_values(load_scene(scene), omega, quaternion, attitude, parameters)
-    aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
+    aim = float(scene.tolerance) if tolerance is None else read_tolerance(tolerance)
     if scene.table is not None:
         if torque is not None:
             raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
@@ -145,8 +147,7 @@ def _with_values(
     parameters: Mapping[str, Any] | None,
 ) -> Scene:
     """Return the scene with another initial state and other constants; None means the value in the scene."""
-    if quaternion is not None and attitude is not None:
-        raise InputError(f"attitude: expected attitude or quaternion, got both, {number.show(attitude)}")
+    refuse_two(attitude, quaternion)
     start = {"omega": omega, "attitude": attitude if quaternion is None else {"quaternion": quaternion}}
     changes = {key: value for key, value in start.items() if value is not None}
     return scene if parameters is None and not changes else scene.with_(parameters, **changes)
@@ -157,16 +158,6 @@ def _longest_step(max_step: float) -> float:
     if not longest > 0.0:
         raise InputError(f"max_step: expected a positive number of seconds, got {number.show(max_step)}")
     return longest
-
-
-def _tolerance(tolerance: float) -> float:
-    from symrot.scene.tables import TOLERANCES
-
-    low, high = TOLERANCES
-    value = float(number.read(tolerance, "tolerance"))
-    if not float(low) <= value <= float(high):  # as doubles: 0.01 is above 1/100
-        raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return value
 
 
 def propagate(

@@ -22,7 +22,7 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
 from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.attitude import read_attitude
+from symrot.scene.attitude import read_attitude, refuse_two
 from symrot.scene.content import plain
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -299,9 +299,8 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
     For an argument that is None, the value in the scene is used.
     """
     initial = scene.initial
+    refuse_two(attitude, quaternion)
     if attitude is not None:
-        if quaternion is not None:
-            raise InputError(f"attitude: expected attitude or quaternion, got both, {number.show(attitude)}")
         initial = initial._replace(quaternion=read_attitude(plain(attitude, "attitude"), "attitude").quaternion)
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))

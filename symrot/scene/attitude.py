@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError
-from symrot.formula.exact_numbers import Angle, equal, read_angle, sqrt
+from symrot.formula.exact_numbers import Angle, equal, read_angle, show, sqrt
 from symrot.kinematics.hamilton import hamilton
 from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
 
-__all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
+__all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "refuse_two", "to_body", "to_space"]
 
 ORTHOGONAL = Fraction(1, 10**9)
 """Largest allowed deviation of R R^T from the unit matrix, for a matrix R in a scene; an exact rotation replaces R."""
@@ -158,6 +158,12 @@ def _rows(value: Any, where: str) -> Matrix:
     row = vector("1")
     first, second, third = (row(item, f"{where}[{index}]") for index, item in enumerate(value))
     return first, second, third
+
+
+def refuse_two(attitude: Any, quaternion: Any) -> None:
+    """Raise InputError if a call has both an attitude and a quaternion; None is no value."""
+    if attitude is not None and quaternion is not None:
+        raise InputError(f"attitude: expected attitude or quaternion, got both, {show(attitude)}")
 
 
 def read_sequence(value: Any, where: str) -> str:

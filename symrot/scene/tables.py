@@ -6,11 +6,13 @@ All numbers are exact. This module does not use SymPy.
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import read
 from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
 from symrot.scene.body import read_body
 from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, text, vector
 
-__all__ = ["QUANTITIES", "SCHEMA", "TOLERANCES", "TOP", "Initial", "Output", "Span"]
+__all__ = ["QUANTITIES", "SCHEMA", "TOLERANCES", "TOP", "Initial", "Output", "Span", "read_tolerance"]
 
 SCHEMA = 1
 MOST_SAMPLES = 10_000_000
@@ -180,6 +182,21 @@ def _read_output(value: Any, where: str) -> Output:
         if "euler" not in values["quantities"] and key in value:
             fail(f"{where}.{key}", "euler among the quantities, since nothing else uses this key", value[key])
     return Output(values["quantities"], values["sequence"], values["degrees"])
+
+
+def read_tolerance(tolerance: float) -> float:
+    """Return the tolerance of a call, after checks.
+
+    Raises
+    ------
+    InputError
+        If it is not a number in the range :data:`TOLERANCES`.
+    """
+    low, high = map(float, TOLERANCES)
+    value = float(read(tolerance, "tolerance"))
+    if not low <= value <= high:  # as doubles: the double 0.01 is above 1/100
+        raise InputError(f"tolerance: expected a number from {low:g} to {high:g}, got {tolerance}")
+    return value
 
 
 def _read_tolerance(value: Any, where: str) -> Fraction:

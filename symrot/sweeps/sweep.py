@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.ensemble.ensemble import read_tolerance
 from symrot.ensemble.variation import read_times
 from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import make_plan
 from symrot.propagation.method import choose_method
 from symrot.scene.scene import Scene, SceneSource, load_scene
+from symrot.scene.tables import read_tolerance
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import read_design

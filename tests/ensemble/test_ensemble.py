@@ -438,7 +438,7 @@ def test_the_plan_does_not_trust_the_start_of_the_scene():
         ({"workers": 0}, "workers: expected a whole number"),
         ({"method": "magic"}, "method: expected one of"),
         ({"method": "constant"}, "method: expected one of"),
-        ({"tolerance": 2}, "tolerance: expected a number from"),
+        ({"tolerance": 0.0101}, "tolerance: expected a number from 1e-15 to 0.01, got 0.0101"),
         ({"omega": [[1, 2, 3]], "parameters": {"center_of_mass_1": [0.5]}, "method": "exact"}, "closed form .* has none"),
     ],
 )  # fmt: skip
@@ -446,6 +446,13 @@ def test_bad_input_is_one_sentence(changes, sentence):
     with pytest.raises(InputError, match=sentence) as caught:
         symrot.propagate_ensemble(scene(TOP), **changes)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("tolerance", [1e-15, 0.01])
+def test_the_ends_of_the_range_are_tolerances_for_one_motion_and_for_many(tolerance):
+    """The double 0.01 is above 1/100."""
+    assert symrot.propagator("t_handle", tolerance=tolerance)([0, 1]).omega.shape == (2, 3)
+    assert symrot.propagate_ensemble("t_handle", t=[0, 1], tolerance=tolerance).omega.shape == (1, 2, 3)
 
 
 # ------------------------------------------------------------------------------------------------ as a good citizen
