@@ -26,7 +26,7 @@ def _client(address: str) -> Any:
         ) from None
     try:
         client.wait_for_workers(1, timeout=SECONDS)
-    except Exception:
+    except (TimeoutError, OSError):  # no worker came, or the scheduler went away
         client.close()
         raise InputError(
             f"--scheduler: expected a Dask cluster with a worker, but {address} has none after {SECONDS} s"
