@@ -44,7 +44,7 @@ from symrot.checker.recognition.evidence import has_word, words_of
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.checker.recognition.naming import SQUARED, verdict_on_name
-from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
@@ -56,6 +56,9 @@ __all__ = ["in_context"]
 
 MOST_ASSIGNMENTS = 24
 """The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+
+MOST_CHOICES = 10_000
+"""The most ways of choosing a symbol for each letter that are tried, whether or not they keep the axes together."""
 
 MOST_DIAGNOSED = 4
 """The most ways of assigning letters for which the fault of a claim is sought."""
@@ -527,7 +530,7 @@ def _assignments(
         choices.append(
             [*exact, *(symbol for symbol in fitting if symbol not in exact)] if is_open else exact or fitting
         )
-    for chosen in _distinct(choices):
+    for chosen in islice(_distinct(choices), MOST_CHOICES):
         pairs = [(symbol.name, as_text(atom)) for symbol, atom in zip(chosen, atoms, strict=True)]
         free = [pair for pair in pairs if pair[0] not in pinned]
         if not is_consistent([*free, *component(known.name, quantity)], known.is_placed):
@@ -543,6 +546,8 @@ def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
     if symbol in pinned or name in pinned:
         return name == symbol
     meaning = context.meaning_of(name)
+    if len(axes_of(symbol)) > 1 and axes_of(symbol) != axes_of(name):
+        return False  # an entry of a matrix keeps its row and column, or exchanges them
     if meaning is not None and meaning.quantity.symbols:
         return re.fullmatch(meaning.quantity.symbols, symbol) is not None
     return name == symbol or any(

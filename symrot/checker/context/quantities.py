@@ -69,7 +69,7 @@ QUANTITIES: tuple[Quantity, ...] = (
               "minus integral of y z dm", "negative product of inertia"),
              ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, sign="minus"),
     Quantity("inertia tensor", ("inertia matrix", "tensor of inertia", "matrix of inertia"),
-             ("inertia tensor", "parallel-axis"), MOMENTS, MOMENT),
+             ("inertia tensor", "parallel-axis"), f"{MOMENTS}|I_xy|I_xz|I_yz", MOMENT),
     Quantity("radius of gyration", (), ("radius of gyration",), "k_O|k_G|i|k", "m"),
     Quantity("kinetic energy", ("kinetic energy of rotation", "rotational energy", "energy of rotation"),
              ("kinetic energy",), "E_k", ENERGY),
