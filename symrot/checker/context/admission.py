@@ -100,6 +100,8 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     if meaning is not None and (line := DIRECTIONS.get(meaning.quantity.title)) and not _has_axes(name, line):
         yield "for another axis"
     phrases = meaning.quantity.formulas if meaning is not None else ()
+    if meaning is not None and meaning.frame == "body" and meaning.quantity.title == "precession rate":
+        phrases = ("goes round its axis",)  # the precession of the angular velocity, seen from the body
     if phrases and not any(phrase in name for phrase in phrases):
         yield "for another quantity"
 

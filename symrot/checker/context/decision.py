@@ -38,6 +38,7 @@ from symrot.checker.context.admission import (
 from symrot.checker.context.angle_orders import has_order
 from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, letters_of
+from symrot.checker.context.lacking_letters import with_lacking_letters
 from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import has_word, words_of
@@ -80,6 +81,8 @@ USUAL: tuple[tuple[str, str], ...] = (
     *((f"omega_{axis}", rf"(omega|w|Omega)_?{pattern}|{letter}") for axis, pattern, letter in (
         ("1", "[1x]", "p"), ("2", "[2y]", "q"), ("3", "[3z]", "omega|w|r"), ("x", "[1x]", "p"), ("y", "[2y]", "q"),
         ("z", "[3z]", "omega|w|r"))),
+    ("domega_1", "d(omega|w|Omega)_?[1x]|dp"), ("domega_2", "d(omega|w|Omega)_?[2y]|dq"),
+    ("domega_3", "d(omega|w|Omega)_?[3z]|dr"),
     ("g", "g"), ("c_3", r"[lRhda]|[lrh]_?(G|cm)"), ("Omega|n", r"Omega|omega_?p|n|Omega_\w+"),
     ("H", r"[HLMh]|[HL]_?[GO]"), ("M|tau_[123]", r"[MNT]|tau|Gamma"), ("W", "W|mg"),
     ("L_1", "[LHM]_?[1x]"), ("L_2", "[LHM]_?[2y]"), ("L_3", "[LHM]_?[3z]"),
@@ -236,6 +239,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     verdict = verdict if decided is None or (verdict.repairs and not decided.counterexample) else decided
     if verdict.verdict in ("true", "recognised"):
         return verdict
+    if verdict.verdict == "definition" and (lacking := _without_letters(claim, named, quantity, stated)) is not None:
+        return lacking
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
         reasons = list(misfits(context, known.name, quantity))
@@ -349,6 +354,33 @@ def _by_meant_formulas(
     if is_open:
         return _near(claim, named, [(candidate, d) for candidate, d in decisions if d is not None])
     return _different(claim, named, verdict, [(candidate, d) for candidate, d in decisions if d is not None])
+
+
+def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
+    """Return the verdict "doubtful" on a formula without a term or factor of the formula that the context states."""
+    context = claim.context
+    own_meaning = context.meaning_of(quantity)
+    if context.body is None and (own_meaning is None or own_meaning.body is None):
+        return None
+    try:
+        formula = named.formula if named.solve is None else named.solve(named.formula)
+        value = claim.with_definitions(claim.interpreter().read(formula))
+    except InputError:
+        return None
+    stated_formulas = (
+        (known, _with_letters(context, known_value(known.text)))
+        for known in _all_known()
+        if not known.is_step and not known.is_relation and not known.name.endswith(SQUARED)
+        and admits_name(context, known.name, quantity)
+        and (own_meaning is not None or any(word in known.name for word in stated.split()))
+        and is_component(known.name, quantity)
+        and not guesses(context, known.name, stated)
+    )  # fmt: skip
+
+    def assignments(known: Known, target: Any, own: set[Expr]) -> Iterator[Mapping[Expr, Expr]]:
+        return _assignments(context, target, own, quantity, known, is_specific=True)
+
+    return with_lacking_letters(named, value, stated_formulas, assignments)
 
 
 def _is_transposed(target: Any, value: Any) -> bool:

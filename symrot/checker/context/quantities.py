@@ -232,6 +232,7 @@ _SPELLINGS = (
     (r"\bx\s*y\s*(\\,)?\s*dm\b", "x y dm"), (r"\bx\s*z\s*(\\,)?\s*dm\b", "x z dm"),
     (r"\by\s*z\s*(\\,)?\s*dm\b", "y z dm"), (r"\bmoments\b", "moment"), (r"\bproducts\b", "product"),
     (r"\b(rate|quaternion|parameter|torque|rotation|couple|angle)s\b", r"\1"), (r"\baxes\b", "axis"),
+    (r"\b(with|in|by) (the )?(euler )?angles? phi,? theta,?( and)? psi\b|\bat (the )?(finite )?angle theta\b", " "),
     (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
     (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
 )  # fmt: skip

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
 from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
-from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
+from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 
 __all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
 
+MOST_TERMS = 6
+"""The most terms of a sum to which brackets are added."""
 MOST_EDITS = 700
 """The most edits of one formula that are evaluated."""
 CLOSE = 1e-8
@@ -45,10 +47,9 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
     """Return the formulas that follow from one edit of a formula with arrays, sorted by the sum of their entries."""
-    if not has_arrays(formula, numeric):
-        return []
+    edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
-    for edit in islice(_edits(formula, numeric, letters), MOST_EDITS):
+    for edit in islice(edits, MOST_EDITS):
         values = values_of(edit.tree, letters.points)
         if values is not None:
             faults.append(ArrayFault(_total(values), edit, values))
@@ -86,6 +87,15 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _powers(formula, numeric)
     yield from _conjugates(formula)
     yield from _factors(formula, numeric, letters)
+
+
+def _brackets(formula: Node) -> Iterator[Edit]:
+    """Yield the formula with brackets that may be missing."""
+    for path, node in walk(formula):
+        if node.kind == "sum" and len(node.args) <= MOST_TERMS:
+            for made in bracketed(node.args):
+                cost = COST["lost_brackets"] + COST["per_level"] * len(path)
+                yield Edit("lost_brackets", cost, path, flattened(replaced(formula, path, _always(made))))
 
 
 def _always(node: Node) -> Callable[[Node], Node]:

@@ -177,6 +177,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
         return words is not None and not (is_energy and has_tension)
     is_general = not letters <= names_in(near.tree)  # the formula may have a letter of its own
+    if is_general and near.code == "factor" and _is_of_stated_body(claim, near):
+        return True
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
         return False  # the formula may be a more general one
@@ -204,6 +206,12 @@ def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether the context of a claim says that its quantity is the one of a known formula."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _is_of_stated_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context of a claim states a body that the name of a known formula contains."""
+    body = claim.context.body
+    return body is not None and body.kind.title in near.known.name
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:

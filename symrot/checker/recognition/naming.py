@@ -20,7 +20,7 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.recognition.evidence import (
     LEAST_SYMBOLS_EDITED,
@@ -280,14 +280,7 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
     """Return whether a formula is a known one once m_1 and m_2 are exchanged: the other mass is the heavier one."""
-    exchanged = {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"}
-
-    def with_exchanged(node: Node) -> Node:
-        if node.kind == "name" and node.value in exchanged:
-            return replace(node, value=exchanged[str(node.value)])
-        return replace(node, args=tuple(map(with_exchanged, node.args)))
-
-    tree = with_exchanged(named.formula)
+    tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
 
@@ -339,8 +332,14 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     The likeliest formula comes first.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    is_open = words_of(named) is None and least_symbols == LEAST_SYMBOLS
+    is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
     return solved or _readings_of_relation(claim, named, tree, LEAST_SYMBOLS if is_open else LEAST_SYMBOLS_RELATED)
+
+
+def _is_stated(claim: Claim, named: NamedFormula) -> bool:
+    """Return whether the context says what each letter of a claim means."""
+    letters = names_in(named.side) | names_in(named.formula)
+    return bool(letters) and all(claim.context.meaning_of(letter) is not None for letter in letters)
 
 
 def _readings_of_relation(
@@ -358,12 +357,11 @@ def _readings_of_relation(
         return ()
     value = without_common_powers(value)
     letters = {*letters_of(tree), *letters_of(named.side)}
-    looked_up = identified(value, steps=False, named=True, quantity="", is_relation=True)
-    fitting = (
-        known
-        for known in looked_up
-        if keeps_places(named, known) and fits_context(claim.context, named, known, letters)
-    )
+
+    def fits(known: Identification) -> bool:
+        return keeps_places(named, known) and fits_context(claim.context, named, known, letters)
+
+    fitting = identified(value, steps=False, named=True, quantity="", is_relation=True, fits=fits)
     return tuple(islice(fitting, MOST_READINGS))
 
 
@@ -387,15 +385,18 @@ def _readings_of_formula(
         return ()
     letters = {*letters_of(formula)}
     searched, ending = _without_function(value)
-    looked_up = identified(searched, steps=False, named=words_of(named) is not None, quantity=quantity_name(named))
-    fitting = [
-        replace(known, name=known.name.removesuffix(ending))
-        for known in looked_up
-        if ending_of(known.name) == ending
-        and fits_quantity(named, known, is_matrix(value))
-        and fits_context(claim.context, named, known, letters)
-        and not has_diameter(known)
-    ]
+
+    def fits(known: Identification) -> bool:
+        return (
+            ending_of(known.name) == ending
+            and fits_quantity(named, known, is_matrix(value))
+            and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
+            and not has_diameter(known)
+        )
+
+    is_named = words_of(named) is not None
+    looked_up = identified(searched, steps=False, named=is_named, quantity=quantity_name(named), fits=fits)
+    fitting = [replace(known, name=known.name.removesuffix(ending)) for known in looked_up]
     fitting.sort(key=lambda known: (*strangeness_of(named, known), rarity_of(known)))
     likeliest = [
         known for known in fitting if strangeness_of(named, known)[:2] == strangeness_of(named, fitting[0])[:2]

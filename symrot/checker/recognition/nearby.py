@@ -17,7 +17,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
-from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, matching
+from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.letters import POINTS, is_atom, letters_of_formula, nodes_of, pieces_of, text_of
@@ -103,7 +103,9 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     quantity = text_of(_quantity(named))
     for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
         is_wrong_kind = _is_column(known) != is_matrix(scale[0])
-        is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
+        is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
+        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW
+        is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
         for renaming in renamings(_names(known), names, angles):
@@ -175,14 +177,15 @@ def _tree(known: Known) -> Node:
 class Search(NamedTuple):
     """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
 
-    ``arrays`` are the formulas of vectors and matrices that follow from one edit of the whole formula; ``values`` are
-    the values of the formula itself.
+    ``arrays`` are the formulas that follow from one edit of the whole formula; ``values`` are the values of the formula
+    itself.
     """
 
     named: NamedFormula
     letters: Letters
     variants: dict[Path, list[tuple[float, Variant]]]
     arrays: list[ArrayFault]
+    has_arrays: bool
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
@@ -215,7 +218,9 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
         parent = kinds[path[:-1]] if path else ""
         made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
         by_path[path] = sorted(made, key=lambda pair: pair[0])
-    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters), values)
+    numeric = NumericFilter(claim)
+    arrays = array_faults(named.formula, numeric, letters)
+    return Search(named, letters, by_path, arrays, has_arrays(named.formula, numeric), values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
@@ -280,14 +285,16 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     renamed = strangeness(renaming)
     is_central = "about its centre of mass" in known.name
     is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
-    array_letters = len(letters.atoms) if search.arrays else 0
+    array_letters = len(letters.atoms) if search.has_arrays else 0
     near_ones = []
+    written = [text_of(node) for node in nodes_of(named.formula) if is_atom(node)]
     for cost, code, tree, letter in trees:
         has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming)
+        times = written.count(letter)
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming, times)
         flags = other_unit, is_shifted, is_symmetric
         near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters))
     return near_ones
@@ -407,11 +414,13 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
         return None
+    if named.solve is None:
+        return None
+    if ending_of(known.name) == SQUARED and named.side == Node("power", None, (_quantity(named), number(2))):
+        return target
     try:
         target = tuple(map(function, target))
     except (ValueError, TypeError):
-        return None
-    if named.solve is None:
         return None
     values = []
     for point, value in zip(letters.points, target, strict=True):

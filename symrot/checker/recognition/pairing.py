@@ -35,6 +35,8 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 RADIUS = re.compile(r"[rR](_?\w+)?|a")
 """The letters of radii; a is also the side of a box."""
 
+COORDINATES = ("x", "y", "z")
+
 UNUSUAL = 2
 """The number of changed names as which a letter counts that is unusual for a length of its kind."""
 
@@ -61,7 +63,7 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
         start: dict[str, str | None] = {absent: None} if absent else {}
         search = islice(_extended(start, rest, fitting, len(own)), MOST_STEPS // (len(order) if absent else 1))
         complete += [renaming for renaming in search if renaming is not None]
-    return sorted(complete, key=lambda renaming: (_moved(renaming), strangeness(renaming)))[:MOST]
+    return sorted(complete, key=lambda renaming: (_moved(renaming), strangeness(renaming), _unlike(renaming)))[:MOST]
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
@@ -70,13 +72,24 @@ def _moved(renaming: dict[str, str | None]) -> int:
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
 
+def _unlike(renaming: dict[str, str | None]) -> int:
+    """Return the number of symbols that a renaming gives a name with another first letter."""
+    return sum(other is not None and not _has_letter_of(name, other) for name, other in renaming.items())
+
+
+def _has_letter_of(name: str, other: str) -> bool:
+    """Return whether two names begin with the same letter, large or small."""
+    return name.lstrip("d")[:1].lower() == plain_name(other).lstrip("d")[:1].lower()
+
+
 def strangeness(renaming: dict[str, str | None]) -> int:
     """Return how many names a renaming changes; a name that the claim lacks counts too.
 
     A letter for radii in place of another length, or the other way round, counts more.
     """
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
-    unusual = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and (other := renaming[name]) is not None
+    lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
+    unusual = [name for name in lengths if (other := renaming[name]) is not None
                and bool(RADIUS.fullmatch(name)) != bool(RADIUS.fullmatch(other))]  # fmt: skip
     return len(changed) + UNUSUAL * len(unusual)
 
@@ -94,7 +107,7 @@ def _extended(
     name, *rest = order
     others = [other for other in fitting[name] if other not in renaming.values()]
     same = [other for other in others if plain_name(other) == name]
-    for other in same or others:
+    for other in same or sorted(others, key=lambda other: not _has_letter_of(name, other)):
         pairs = [(mine, chosen) for mine, chosen in renaming.items() if chosen is not None]
         if not is_consistent([*pairs, (name, other)]):
             continue
@@ -113,7 +126,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     is_rate = own.startswith("diff(") or own.endswith("dot")
     if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
-    if known in ("x", "y", "z") and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
+    if known in COORDINATES and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
         return True  # a component of any vector, such as a rotated velocity
     if is_angle:
         return unit in ("rad", None)

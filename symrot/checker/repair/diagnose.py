@@ -74,7 +74,8 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     if decision.requires:
         needed = decision.requires[0]
         return Diagnosis(needed.code, f"{FAULT_DESCRIPTIONS[needed.code]}: {needed.text}"), repairs
-    faults = sorted([*search.tautologies, *((repair.cost, repair.code) for repair in repairs)])
+    faults = [*((repair.cost, repair.code) for repair in repairs), *search.tautologies]
+    faults.sort(key=lambda fault: fault[0])  # of faults of equal cost, that of the first repair is named
     code = faults[0][1] if faults else "none"
     return Diagnosis(code, FAULT_DESCRIPTIONS[code]), repairs
 

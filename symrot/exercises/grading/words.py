@@ -39,6 +39,7 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "half_angle": (HALF, "an angle stands where its half belongs"),
     "double_half_angle": (HALF, "half of an angle stands where the angle belongs"),
     "sin_cos_swap": (HALF, "sine and cosine are exchanged"),
+    "lost_brackets": (HALF, "brackets are missing"),
     "wrong_symbol": (HALF, "one letter stands where another belongs"),
     "missing_term": (HALF, "a term is missing"),
     "extra_term": (HALF, "there is a term too many"),
