@@ -101,18 +101,20 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A derived formula in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end.
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
+    of the formula, such as "transposed".
     """
 
     known: Known
     value: Any
     mapping: dict[str, str]
     open_place: bool = False
+    how: str = ""
 
     @property
     def identification(self) -> Identification:
         """The derived formula as an entry of ``recognised_as`` in a verdict."""
-        return Identification(self.known.name.removesuffix(SQUARED), "", self.mapping, self.known.source)
+        return Identification(self.known.name.removesuffix(SQUARED), self.how, self.mapping, self.known.source)
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
@@ -351,9 +353,17 @@ def _by_meant_formulas(
         if same == names or not equal[0].open_place:
             return _true(claim, named, Verdict("recognised", recognised_as=readings))
         return _with_guesses(claim.context, Verdict("recognised", recognised_as=readings), stated)
+    known_decisions = [(candidate, decision) for candidate, decision in decisions if decision is not None]
     if is_open:
-        return _near(claim, named, [(candidate, d) for candidate, d in decisions if d is not None])
-    return _different(claim, named, verdict, [(candidate, d) for candidate, d in decisions if d is not None])
+        return _near(claim, named, known_decisions)
+    return _different(claim, named, verdict, [*known_decisions, *_transposed(known_decisions)])
+
+
+def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
+    """Yield the rotation matrices that may be meant from space to body."""
+    for candidate, decision in decisions:
+        if candidate.known.name.startswith("rotation matrix"):
+            yield replace(candidate, value=candidate.value.T, how="transposed"), decision
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:

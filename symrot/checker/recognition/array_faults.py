@@ -10,7 +10,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
-from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
+from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
 from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
@@ -87,6 +87,7 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _powers(formula, numeric)
     yield from _conjugates(formula)
     yield from _factors(formula, numeric, letters)
+    yield from _products(formula, numeric)
 
 
 def _brackets(formula: Node) -> Iterator[Edit]:
@@ -140,9 +141,37 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 
+def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
+    """Yield the formula with one more matrix in front of a vector, and with one more cross product."""
+    shapes = {node: _shape(node, numeric) for _, node in walk(formula) if numeric.is_matrix(node)}
+    names = sorted({*numeric.matrix_names})
+    named = {name: _shape(Node("name", name), numeric) for name in names}
+    for path, node in walk(formula):
+        if shapes.get(node) != VECTOR or node.kind in ("neg", "sum"):
+            continue
+        for name, shape in named.items():
+            other = Node("name", name)
+            if shape == SQUARE:
+                made = product([other, node])
+            elif shape == VECTOR and other != node:
+                made = Node("call", "cross", (other, node))
+            else:
+                continue
+            tree = flattened(replaced(formula, path, _always(made)))
+            yield Edit("factor", COST["missing_matrix"] + COST["per_level"] * len(path), path, tree)
+
+
+VECTOR, SQUARE = (3, 1), (3, 3)
+
+
+def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
+    values = values_of(node, numeric.points[:1])
+    return shape_of(values[0]) if values is not None else None
+
+
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
     """Yield the scalars by which a term may have to be multiplied."""
-    made: dict[Node, None] = {}
+    made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):
             assert function in FUNCTIONS

@@ -168,7 +168,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
+    if is_new and (max(len(letters), near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
@@ -189,6 +189,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
     if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+        return True
+    is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
+    if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
         return True
@@ -330,7 +333,7 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
 
 def quantity_name(named: NamedFormula) -> str:
     """Return the name of a quantity; the name of its time derivative has a ``d`` in front."""
-    name, dots = re.subn("_?dot$", "", re.sub("(_prime)+$", "", named.name))
+    name, dots = re.subn("_?dot$", "", re.sub("_(plus|minus)$|(_prime)+$", "", named.name))
     return f"d{name}" if named.is_rate or dots else name
 
 

@@ -22,6 +22,7 @@ from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import (
     LEAST_SYMBOLS_EDITED,
     MOST_COMPONENTS,
@@ -42,10 +43,10 @@ from symrot.checker.recognition.evidence import (
     strangeness_of,
     words_of,
 )
-from symrot.checker.recognition.identification import identified
+from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
-from symrot.checker.recognition.nearby import near_formulas
+from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
@@ -53,6 +54,8 @@ from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.decide import decide
+from symrot.exact.printing import as_text
+from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation"]
 
@@ -237,7 +240,10 @@ def _is_norm(side: Node, other: Node) -> bool:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None."""
+    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None.
+
+    The verdict is "recognised" if the formula is a known one already, for some signs of the letters in its roots.
+    """
     words = words_of(named)
     nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
     plain = quantity_name(named)
@@ -246,6 +252,9 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
+    if nearby and nearby[0].code == "none":
+        readings = _with_root(claim, named, nearby[0])
+        return Verdict("recognised", recognised_as=readings) if readings else None
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
@@ -255,6 +264,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         if says_too_little(claim, named, near) or _loses_letter(claim, near.tree):
             continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
+        readings = readings or _with_root(claim, named, near)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
     if not repairs:
@@ -267,6 +277,41 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         repairs=tuple(repair for repair, _ in repairs.values()),
         recognised_as=readings,
     )
+
+
+def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
+    """Return the known formula near a claim, if both are equal for some signs of the letters in their roots.
+
+    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
+    """
+    ending = ending_of(near.known.name)
+    if named.solve is None or ending not in ("", SQUARED):
+        return ()
+    try:
+        value = claim.with_definitions(claim.interpreter().read(named.solve(near.tree)))
+    except InputError:
+        return ()
+    if is_matrix(value) or not _has_root_of_sum(value):
+        return ()
+    symbols = {as_text(atom): atom for atom in atoms_of([value])}
+    known = known_value(near.known.text)
+    pairs = {symbol: symbols.get(new) for symbol in known.free_symbols for old, new in near.renaming
+             if old == symbol.name}  # fmt: skip
+    if None in pairs.values() or {*pairs} != known.free_symbols:
+        return ()
+    try:
+        decision = decide_equation(Equation(value**2 if ending else value, known.xreplace(pairs)))
+    except (InputError, TooLarge):
+        return ()
+    by_sign = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in decision.requires)
+    if decision.verdict != "true" and not by_sign:
+        return ()
+    renaming = {old: new for old, new in sorted(near.renaming) if old != new}
+    reading = Identification(near.known.name.removesuffix(ending), "", renaming, near.known.source)
+    fits = fits_quantity(named, reading, matrix=False) and fits_context(
+        claim.context, named, reading, {*letters_of(near.tree)}
+    )
+    return (reading,) if fits else ()
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:

@@ -12,7 +12,7 @@ from itertools import islice
 from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
 from symrot.checker.recognition.renaming import axes_of, is_consistent
 
-__all__ = ["absent_name", "is_fitting", "renamings", "strangeness"]
+__all__ = ["absent_name", "is_fitting", "renaming_of_product", "renamings", "strangeness"]
 
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
@@ -63,7 +63,32 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
         start: dict[str, str | None] = {absent: None} if absent else {}
         search = islice(_extended(start, rest, fitting, len(own)), MOST_STEPS // (len(order) if absent else 1))
         complete += [renaming for renaming in search if renaming is not None]
-    return sorted(complete, key=lambda renaming: (_moved(renaming), strangeness(renaming), _unlike(renaming)))[:MOST]
+    return sorted(complete, key=_rank)[:MOST]
+
+
+def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
+    """Return the sort key of a renaming: the most similar ones, and of these the complete ones, come first."""
+    return _moved(renaming), strangeness(renaming), None in renaming.values(), _unlike(renaming)
+
+
+def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
+    """Return the renaming of the components of a quaternion product whose factors are numbered: a1, .., d1 and a2, ...
+
+    The result is None for other names.
+    """
+    places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
+    letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
+    if len(places) != len(own) or (len(letters), len(numbers)) != (4, 2) or len(own) < 2 * len(letters) - 1:
+        return None
+    return {
+        f"{factor}{n}": places.get((letter, number))
+        for factor, number in zip("qp", numbers, strict=True)
+        for n, letter in enumerate(letters)
+    }
+
+
+NUMBERED = re.compile("([a-z])_?([1-9])")
+"""A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
 
 
 def _moved(renaming: dict[str, str | None]) -> int:

@@ -323,7 +323,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
         cost = COST["factor"] + COST["quotient_inverted"]
         yield Variant(Change(node.args[0], "factor", cost), tuple(1 / value for value in values))
         return
-    elif node.kind not in ("name", "call", "sum") or not parent:
+    elif not (node.kind in ("name", "call", "sum") and parent) and not (node.kind == "product" and parent == "inv"):
         return
     bases = values_of(base, letters.points) or ()
     for power in POWERS:

@@ -74,8 +74,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     if decision.requires:
         needed = decision.requires[0]
         return Diagnosis(needed.code, f"{FAULT_DESCRIPTIONS[needed.code]}: {needed.text}"), repairs
-    faults = [*((repair.cost, repair.code) for repair in repairs), *search.tautologies]
-    faults.sort(key=lambda fault: fault[0])  # of faults of equal cost, that of the first repair is named
+    faults = sorted([*search.tautologies, *((repair.cost, repair.code) for repair in repairs)])
     code = faults[0][1] if faults else "none"
     return Diagnosis(code, FAULT_DESCRIPTIONS[code]), repairs
 

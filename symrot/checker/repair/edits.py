@@ -66,7 +66,7 @@ COST = {
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "name_transposed": 0.02,
     "rows_as_columns": 0.01, "names_exchanged": 0.1, "root_left_out": 0.1,
-    "cross_product_order": 0.02, "whole_cross_product_order": -0.06, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "cross_product_order": 0.02, "whole_cross_product_order": -0.04, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
     "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
     # one fault everywhere in a tree
     "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
