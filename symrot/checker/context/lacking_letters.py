@@ -65,9 +65,7 @@ def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
     return "factor" if quotient.free_symbols and quotient.free_symbols <= lacking else ""
 
 
-def _verdict(
-    named: NamedFormula, known: Known, target: Expr, mapping: Mapping[Expr, Expr], code: str
-) -> Verdict:
+def _verdict(named: NamedFormula, known: Known, target: Expr, mapping: Mapping[Expr, Expr], code: str) -> Verdict:
     names = {old.name: as_text(new) for old, new in mapping.items() if isinstance(old, Symbol)}
     renaming: dict[str, str | None] = dict(names)
     for old, new in names.items():

@@ -166,7 +166,7 @@ VECTOR, SQUARE = (3, 1), (3, 3)
 
 def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
     values = values_of(node, numeric.points[:1])
-    return shape_of(values[0]) if values is not None else None
+    return shape_of(values[0]) if values else None
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:

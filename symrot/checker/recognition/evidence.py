@@ -168,7 +168,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
-    if is_new and (max(len(letters), near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
+    if is_new and (
+        max(len(letters), near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+    ):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign

@@ -122,7 +122,9 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
                 return []
             if compared is None and has_root_of_sum(named.formula):
                 texts = tuple((old, new) for old, new in renaming.items() if new is not None)
-                whole = Near(0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts)
+                whole = Near(
+                    0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts
+                )
                 return [whole]
             for candidate in compared or ():
                 key = (candidate.tree, known.name)

@@ -392,9 +392,7 @@ def _scalars_in_front(node: Node, matrices: Callable[[Node], bool]) -> tuple[lis
     return (scalars, product(rest)) if scalars and rest else ([], node)
 
 
-def _of_call(
-    node: Node, path: Path, functions: Collection[str], matrices: Callable[[Node], bool]
-) -> Iterator[Change]:
+def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Callable[[Node], bool]) -> Iterator[Change]:
     name, arguments = node.value, node.args
     if name in OPPOSITE:
         yield "sin_cos_swap", replace(node, value=OPPOSITE[name]), 0.0
