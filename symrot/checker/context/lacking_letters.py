@@ -12,7 +12,6 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import text
-from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known
 from symrot.checker.recognition.pairing import absent_name
 from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS
