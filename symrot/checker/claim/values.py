@@ -51,7 +51,7 @@ def decide_value(claim: Claim) -> Decision:
         return Decision("false", counterexample=Counterexample((), None, exact, claim.printed.strip()))
     return Decision(
         "undecided",
-        reason="the value lies too close to the middle between two roundings to tell which digits are right",
+        reason="the value is too close to the middle between two roundings to tell its last digit",
     )
 
 

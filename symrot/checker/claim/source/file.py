@@ -78,9 +78,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
         raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
     tables = table.get("claim")
     if not isinstance(tables, list) or not tables or not all(isinstance(entry, dict) for entry in tables):
-        raise InputError(
-            f"{label}: expected [[claim]] tables, got {'none' if not tables else 'another value of the key claim'}"
-        )
+        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'no tables'}")
     if len(tables) > MOST_CLAIMS:
         raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(tables)}")
     entries: list[Claim | Refusal] = []
