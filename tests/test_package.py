@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -184,6 +185,14 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     }
     assert wanted <= held
     assert not any(name.startswith("tests") for name in held)
+
+
+def test_all_files_name_the_same_version(unpacked_wheel):
+    (metadata,) = unpacked_wheel.glob("symrot-*.dist-info/METADATA")
+    (changes,) = re.findall(r"^## \[(\d.*?)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)[:1]
+    (citation,) = re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.MULTILINE)
+    (installed,) = re.findall(r"^Version: (.*)$", metadata.read_text("utf-8"), re.MULTILINE)
+    assert {changes, citation, installed} == {symrot.__version__}
 
 
 def test_a_warm_run_imports_nothing_it_can_do_without(tmp_path):
