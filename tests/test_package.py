@@ -3,6 +3,7 @@
 import ast
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -145,8 +146,15 @@ def test_a_name_that_is_not_there_is_an_attribute_error():
 
 @pytest.fixture(scope="module")
 def unpacked_wheel(tmp_path_factory):
-    """Return the folder of the wheel, unpacked outside the source tree."""
+    """Return the folder of the wheel, unpacked outside the source tree.
+
+    It is built from a copy, because setuptools writes into the folder that it builds, and two processes may test.
+    """
     directory = tmp_path_factory.mktemp("wheel")
+    source = directory / "source"
+    shutil.copytree(PACKAGE, source / "symrot", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"):
+        shutil.copy(ROOT / name, source)
     command = [
         sys.executable,
         "-m",
@@ -157,7 +165,7 @@ def unpacked_wheel(tmp_path_factory):
         "--no-build-isolation",
         "-w",
         str(directory),
-        str(ROOT),
+        str(source),
     ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
