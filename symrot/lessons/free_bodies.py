@@ -91,7 +91,8 @@ LESSONS = {
         before=("symmetric_spin", "euler_body_rates"),
         mistake=Mistake(
             "Feynman told a story about a plate in the cafeteria of Cornell. A plate has $C = 2 A$, and for a small "
-            r"wobble the precession has the rate $C \omega_3 / A$. His story had the inverse ratio.",
+            r"wobble the precession has the rate $C \omega_3 / A$. His story had the inverse ratio, and students "
+            "repeat it.",
             "dphi == omega_3/2",
             facts=("dphi == C*omega_3/A", "C == 2*A", "A > 0"),
             lesson="The plate wobbles twice as fast as it spins.",

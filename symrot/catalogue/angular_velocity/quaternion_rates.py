@@ -66,7 +66,8 @@ def derive() -> Derivation:
         named=r"\frac{d}{dt} |q|^2",
     )
     d.step(
-        r"Then the rate of the direction cosine matrix is that of a rotation with $\omega_b$, in all nine entries.",
+        r"Then the direction cosine matrix rotates with the angular velocity $\omega_b$ (body components), in all "
+        "nine entries.",
         rate(dcm_sb, body),
         dcm_sb * skew(OMEGA),
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",
@@ -92,7 +93,7 @@ def derive() -> Derivation:
         Matrix([*space.values()]),
     )
     d.step(
-        r"Then the rate of the direction cosine matrix is that of a rotation with $\omega_s$.",
+        r"Then the direction cosine matrix rotates with the angular velocity $\omega_s$ (space components).",
         rate(dcm_sb, space),
         skew(OMEGA_S) * dcm_sb,
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",

@@ -39,8 +39,8 @@ def _skewness(d: Derivation) -> None:
     spin = MATRIX_RATE * MATRIX.T
     d.passage("Let $R$ be any matrix that changes with time, and define", (r"W", r"\dot R\,R^{\mathsf T}"))
     d.step(
-        r"$W + W^{\mathsf T}$ is the rate of $R R^{\mathsf T}$. For a rotation $R R^{\mathsf T} = 1$ is constant, so "
-        "$W$ is skew.",
+        r"The matrix $W + W^{\mathsf T}$ is the rate of $R R^{\mathsf T}$. For a rotation $R R^{\mathsf T} = 1$ is "
+        "constant, so $W$ is skew.",
         spin + spin.T,
         rate(MATRIX * MATRIX.T, moving),
         because="the product rule gives one term from each factor",

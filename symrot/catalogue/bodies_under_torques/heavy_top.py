@@ -44,7 +44,7 @@ def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
         "point are $A, A, C$. The Lagrangian is",
             (r"\mathcal L", r"T - W c_3 \cos\theta"))  # fmt: skip
     d.step(
-        "The kinetic energy of the top is",
+        "The kinetic energy of the top is:",
         kinetic,
         HALF * A * (DTHETA**2 + DPHI**2 * sin(THETA) ** 2) + HALF * C * (DPSI + DPHI * cos(THETA)) ** 2,
         because=r"$\omega_b = B \dot q$, and two moments are equal",

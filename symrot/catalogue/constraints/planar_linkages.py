@@ -52,7 +52,7 @@ def _slider(d: Derivation) -> None:
     )
     velocity = rate(place, MOTION).subs(DPSI, rod_rate)
     d.step(
-        "The slider has the velocity",
+        "The slider has the velocity:",
         velocity,
         -CRANK * sin(PHI + PSI) / cos(PSI) * DPHI,
         because="the position of the slider is differentiated, and step 1 gives the rate of the rod",

@@ -79,7 +79,7 @@ def _wheel(d: Derivation) -> None:
     velocity = rate(rim, motion)
     d.define("A point of the rim moves along a cycloid:", "r", rim)
     d.step(
-        "The velocity of this point is that of a rotation about the point of contact.",
+        "This point has the velocity of a rotation about the point of contact.",
         velocity,
         symbols.dtheta * Matrix([rim[1], R * THETA - rim[0]]),
         because="the point of contact is the instantaneous centre",

@@ -71,15 +71,15 @@ def _sums(d: Derivation) -> None:
         d.notation({rf"\mathrm{{{name}}}(u + w)": here, rf"\mathrm{{{name}}}(u - w)": there, r"\Delta": BELOW})
     for claim, name, left, right, value in (
         (
-            "The three functions have the same derivatives with respect to $u$ as "
-            "sn, cn and dn. The first derivative is",
+            "The three functions have the same derivatives with respect to $u$ as sn, cn and dn. The derivative of "
+            "$S$ is:",
             "S",
             s,
             c * dn,
             r"\hat C\,\hat D",
         ),
-        ("The second derivative is", r"\hat C", c, -s * dn, r"-S\,\hat D"),
-        ("The third derivative is", r"\hat D", dn, -MU * s * c, r"-\mu\,S\,\hat C"),
+        (r"The derivative of $\hat C$ is:", r"\hat C", c, -s * dn, r"-S\,\hat D"),
+        (r"The derivative of $\hat D$ is:", r"\hat D", dn, -MU * s * c, r"-\mu\,S\,\hat C"),
     ):
         d.step(
             claim,
@@ -134,7 +134,7 @@ def _zeta(d: Derivation) -> None:
         display=r"\frac{d}{du} \left( -\mu\,\mathrm{sn}_w\,\mathrm{sn}\,S \right)",
     )
     d.step(
-        "For $w$ and $-w$ together, the addition theorem gives $Z(u + w) - Z(u - w) - 2 Z(w)$ as",
+        "For $w$ and $-w$ together, the addition theorem gives $Z(u + w) - Z(u - w) - 2 Z(w)$ as:",
         -MU * SN_W * SN * (s + shifted(-1)[0]),
         -2 * MU * SN_W * CN_W * DN_W * SN**2 / BELOW,
         because=r"the zeta function $Z$ is odd, and the sum of $\mathrm{sn}(u + w)$ and $\mathrm{sn}(u - w)$ is "

@@ -228,7 +228,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
         r"multiplied by $H - \ell_3\,\mathrm{dn}$, the rate becomes a rational function of sn and dn."
     )
     d.step(
-        "The denominator becomes",
+        "The denominator of the rate becomes:",
         (H - THREE * DN) * (H + THREE * DN),
         ONE**2 + parameter * THREE**2 * SN**2,
         because=r"$H^2 = \ell_1^2 + \ell_3^2$",
@@ -238,7 +238,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
         r"\frac{\ell_3^2}{\ell_1^2}\,\mathrm{sn}^2",
     )
     d.step(
-        "The constant factor of the numerator is",
+        "The constant factor of the numerator is:",
         ONE**2 / A + THREE**2 / C - H**2 / C,
         SIGN * constants["speed"] * ONE * two / THREE,
         because=r"$p$ is substituted",
@@ -252,7 +252,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     rate_of_turn = turning_rate().subs({T: energy, L3: THREE * DN})
     d.notation({r"\dot\psi": rate_of_turn})
     d.step(
-        r"Hence the rate, expressed with $\ell_2$ and $p$, is",
+        r"Hence the rate, expressed with $\ell_2$ and $p$, is:",
         rate_of_turn,
         H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below,
         because="the two previous steps are substituted",

@@ -53,7 +53,7 @@ def derive() -> Derivation:
     omega = tensor.inv() * momentum
     d.notation({"p": P, "h": tanh(P * TIME / 2)}, {TIME: Integer(1)})
     d.step(
-        "The derivative of $h$ is",
+        "The derivative of $h$ is:",
         tanh(P * TIME / 2).diff(TIME),
         P / 2 * (1 - tanh(P * TIME / 2) ** 2),
         because=r"$\tanh' = 1 - \tanh^2$",
@@ -108,7 +108,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         {"T": momentum.dot(omega) / 2, "L_1": momentum[0], "L_3": momentum[2], r"\omega_3": omega[2], r"\sigma": SIGN}
     )
     d.step(
-        "The rotation about the angular momentum has the rate",
+        "The rotation about the angular momentum has the rate:",
         speed,
         H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2]),
         because=r"$2 T = H^2 / B$",

@@ -227,9 +227,9 @@ def _theta(d: Derivation) -> None:
             display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
-            "The imaginary part is that of the angle, with a suitable sign of $w$, "
-            rf"$\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,\frac{{p_\phi {sign} p_\psi}}"
-            r"{2 A\,p\,(u_2 - u_1)}$:",
+            rf"The imaginary part is, up to a constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of $w$ is "
+            rf"chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,\frac{{p_\phi {sign} p_\psi}}"
+            r"{2 A\,p\,(u_2 - u_1)}$.",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,
             because=r"$p$ and the momenta are substituted in terms of the zeros",

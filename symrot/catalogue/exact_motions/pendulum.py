@@ -154,14 +154,15 @@ def _spherical(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        r"$p_\phi^2$ is not negative only if $u_1 + u_2 \le 0$: the mean of both heights is below the support.",
+        r"The square of $p_\phi$ is not negative only if $u_1 + u_2 \le 0$: the mean of both heights is below the "
+        "support.",
         square * (U1 + U2),
         -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2),
         because="$1 - u^2$ is not negative",
         named=r"p_\phi^2\,(u_1 + u_2)",
     )
     d.step(
-        "If both heights are equal, the pendulum moves on a cone. The square of its rate is",
+        "If both heights are equal, the pendulum moves on a cone. The square of its rate is:",
         square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
         -W * ARM / (A * U1),
         because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",

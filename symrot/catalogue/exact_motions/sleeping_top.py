@@ -66,7 +66,7 @@ def _through(d: Derivation) -> None:
     sine = sqrt((1 - U1) / 2) * CN
     d.step(
         "The axis passes through the upward vertical at a finite speed. The square of the rate of "
-        r"$\sin\tfrac\theta2$ there is",
+        r"$\sin\tfrac\theta2$ there is:",
         rate(sine, along).subs({SN: 1, CN: 0}) ** 2,
         W * ARM * (1 - U1) * (U3 - 1) / (4 * A),
         because=r"$\mathrm{sn} = 1$, $\mathrm{cn} = 0$",

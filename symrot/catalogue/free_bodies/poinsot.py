@@ -168,7 +168,7 @@ def _herpolhode(d: Derivation) -> None:
     )
     along = OMEGA.dot(MOMENTUM) / SQUARE * MOMENTUM
     d.step(
-        "The distance of the point of contact from the foot of the perpendicular from the centre to the plane is",
+        "The point of contact has this distance from the foot of the perpendicular from the centre to the plane.",
         squared(OMEGA - along),
         squared(OMEGA) - TWICE_ENERGY**2 / SQUARE,
         because=r"the component of $\omega$ along $L$ is $2 T / |L|$",

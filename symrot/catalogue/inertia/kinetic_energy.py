@@ -134,7 +134,7 @@ def _angles(d: Derivation) -> None:
     dphi, dtheta, dpsi = symbols.angle_rates
     d.names.pop("T")
     d.step(
-        "The kinetic energy of a body with three different moments is",
+        "The kinetic energy of a body with three different moments is:",
         HALF * omega.dot(diag(a, b, c) * omega),
         HALF * a * (dphi * sin(theta) * sin(psi) + dtheta * cos(psi)) ** 2
         + HALF * b * (dphi * sin(theta) * cos(psi) - dtheta * sin(psi)) ** 2

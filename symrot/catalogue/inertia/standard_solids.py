@@ -61,7 +61,7 @@ def _shape(d: Derivation, body: Solid) -> None:
     )
     columns = body.position.jacobian(coordinates)
     d.step(
-        "The Jacobian of the map is",
+        "The Jacobian of the map is:",
         (columns.T * columns).det(method="berkowitz"),
         body.jacobian**2,
         because="the square of the measure of a cell is the determinant of the scalar products of its edges",
@@ -72,7 +72,7 @@ def _shape(d: Derivation, body: Solid) -> None:
         display=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
     )
     d.step(
-        "The measure of the body is",
+        "The measure of the body is:",
         _integral(body, ()),
         body.measure,
         because=_antiderivatives(body, ()),
@@ -106,7 +106,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
     for axes in products:
         if axes not in zero and len(axes) == 1:
             d.step(
-                f"The coordinate ${AXES[axes[0]]}$ of the centre of mass is",
+                f"The coordinate ${AXES[axes[0]]}$ of the centre of mass is:",
                 moments[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
                 because=_antiderivatives(body, axes),
@@ -115,7 +115,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
             )
         elif axes not in zero:
             d.step(
-                f"The second moment of ${_product(axes)}$ is",
+                f"The second moment of ${_product(axes)}$ is:",
                 moments[axes],
                 values[_quantity(axes)],
                 because=_antiderivatives(body, axes),
@@ -132,7 +132,7 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
     center = Matrix([moments[i,] for i in range(3)]) / body.mass
     about_origin = second.trace() * eye(3) - second
     d.step(
-        "The inertia tensor about the centre of mass is",
+        "The inertia tensor about the centre of mass is:",
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
         because="a moment is the integral of the sum of two squares, a product of inertia has a minus sign, "
