@@ -25,7 +25,7 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
-    """Return the description for the head of a trajectory file: scene, method, meaning of each array, conventions."""
+    """Return the description that a trajectory file begins with: scene, method, conventions, meaning of each array."""
     requested = zip(trajectory.events or (), trajectory.event_kinds or (), trajectory.t_events or (), strict=True)
     scene, stats = trajectory.scene, trajectory.stats
     return {
@@ -101,7 +101,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], events: list[Labelled], about
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return the numbers of a quantity as text, one list per component, with enough digits to restore the doubles."""
+    """Return the numbers in a part of the samples as text, one list per component; digits suffice for exact doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
