@@ -1,4 +1,4 @@
-"""Drawing of curves over time in one panel: too fast oscillations become a filled band, overlapping curves are dashed."""
+"""Drawing of curves over time in one panel: fast oscillations become a filled band, overlapping curves are dashed."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any

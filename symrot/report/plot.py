@@ -106,7 +106,7 @@ def _legend(axes: Any) -> None:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a nearly constant component, so large that the others look flat, is written as text."""
+    """Draw components over time; a steady component, so large that the others look flat, is written as text."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
