@@ -18,8 +18,8 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""Kinds of functions in a motion: elementary functions, theta series, their imaginary transforms (series for large
-moduli), and functions on the separatrix."""
+"""Kinds of functions by which a motion is computed: elementary functions, theta series, transformed theta series (which
+converge faster for large moduli), and functions on the separatrix."""
 
 _DOMAIN = 1
 _Functions = tuple[Any, Any, Any]

@@ -217,7 +217,10 @@ class Driven:
         return self._moving(rates, [float(x) for x in number.unit(components)])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
-        """Return the motion from initial rates, rad/s, and a unit quaternion; only the rates are checked."""
+        """Return the motion from an initial angular velocity, rad/s, and a unit quaternion.
+
+        Unlike :meth:`motion`, it does not check or normalise the quaternion.
+        """
         return self._moving([Fraction(x) for x in numbers("omega", rates, 3)], attitude)
 
     def _moving(self, rates: list[Fraction], attitude: list[float]) -> AxialMotion:
@@ -225,7 +228,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about the body axis."""
+    """Return the attitude q after a further rotation by 180 degrees about a body axis, as a quaternion."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

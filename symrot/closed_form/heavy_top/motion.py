@@ -86,7 +86,10 @@ def starts(
 
 
 class Top:
-    """A symmetric heavy top with the constants that all its motions share: moments, weight times distance, and axes."""
+    """A symmetric heavy top with the constants that all its motions share.
+
+    They are the moments of inertia, the weight times the distance of the centre of mass from the fixed point, and axes.
+    """
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -160,7 +163,7 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are those of the scene, so that no attitude has to be converted."""
+        """Whether these axes are the same as the axes of the scene, so that attitudes need no conversion."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:

@@ -160,10 +160,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions of the theta series of alpha (i = 0) or beta (i = 1) at ``place``, in four lists.
+        """Return the terms' functions in the theta series of alpha (i = 0) or beta (i = 1), at the argument ``place``.
 
-        The lists are: the functions in the real part, the functions in the imaginary part, the derivatives of the
-        former, and the derivatives of the latter.
+        There are four lists: the functions in the real part of the series, those in its imaginary part, and the
+        derivatives of the functions in both parts.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -189,7 +189,10 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series: alpha and beta, or their rates, get the initial values."""
+        """Set the constant factors of the theta series, so that alpha and beta agree with the initial state.
+
+        If alpha or beta is nearly zero at the start, its rate is used instead.
+        """
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -296,6 +299,6 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
 
 
 def _zero(square: Any, m: Any) -> Any:
-    """Return y with sn(y)^2 = ``square``, for the elliptic function sn of parameter 1 - m."""
+    """Return the argument y at which sn(y)^2 = ``square``, for the elliptic function sn of parameter 1 - m."""
     square = min(max(square, mpf(0)), mpf(1))
     return mp.sqrt(square) * mp.elliprf(1 - square, 1 - (1 - m) * square, 1)
