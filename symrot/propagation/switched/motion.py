@@ -91,7 +91,7 @@ class SwitchedMotion(MotionInParts):
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
         """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
 
-        If an error ends the motion early, it is appended to ``broken``.
+        If an error ends the motion early, it is appended to ``broken`` and the motion before it is returned.
         """
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
@@ -121,7 +121,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A motion under torques with switching functions, as a function of time, composed of its smooth parts."""
+    """A function from time to states for a motion under torques with switching functions, made of its smooth parts."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
