@@ -58,7 +58,10 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan for a motion in closed form: no state is eliminated, since nothing has to be integrated."""
+    """Return the plan without the simplifications that eliminate states, for a motion in closed form.
+
+    A closed form gives all states at no cost, since nothing has to be integrated.
+    """
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -93,7 +96,7 @@ class Setup:
     epoch : float
         Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
-        Whether the stepper may count time from another origin than the scene does.
+        Whether the stepper may count time from another instant than t = 0 of the scene.
     warnings : tuple of str
         Sentences that say which accuracy cannot be guaranteed.
     """
@@ -119,17 +122,17 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the kernel counts time from an origin that moves with the steps, so that phases keep their digits."""
+        """Whether the kernel counts time from an instant that moves during the motion, so that phases keep digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """Function from a plan with any initial state to the parameters of the rates, one double per parameter."""
+        """Function that returns the parameters of the rates for a plan with any initial state: one double each."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function that returns the parameters of the output quantities for a plan: two doubles per parameter."""
+        """Function that returns the parameters of the output quantities for a plan, two doubles for each parameter."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
@@ -139,7 +142,10 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function from parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed."""
+        """Function that takes parameters of the rates and returns bounds that limit SciPy's steps; None without limit.
+
+        The bounds ensure that no step passes over a short pulse of a torque.
+        """
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
@@ -163,7 +169,7 @@ class SteppedSetup:
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan; its arguments are checked."""
+        """The integration from the initial state of the setup's plan, with checked arguments; other motions copy it."""
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -195,7 +201,7 @@ class ClosedFormSetup:
 
     @cached_property
     def starts(self) -> Starts:
-        """Function from initial states to motions in closed form, for the body and the torques of the plan."""
+        """Function that takes an initial state and returns the motion in closed form, for this body and its torques."""
         return self.form.starts(self.setup.plan.scene)
 
 
@@ -203,7 +209,7 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene time ``epoch``.
+    """The motion of a scene from one initial state; its clock shows 0 at the scene time ``epoch``.
 
     ``has_external_torque`` says whether a torque without a formula acts on the body.
     """
@@ -348,7 +354,7 @@ class RestartableMotion(Motion):
 
 
 class SteppedInC(ABC):
-    """Interface of motions that are integrated by a stepper in C."""
+    """Interface of motions that a stepper in C integrates; :attr:`stepping` is the integration."""
 
     @property
     @abstractmethod
@@ -366,7 +372,7 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times since the epoch, shape (n, N), and the number of steps and evaluations."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at times of the scene, shape (n, N), and the cost of the motion.
@@ -382,14 +388,14 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether these times lose fewer digits on a clock that shows 0 at the start."""
+        """Return whether these times of the scene keep more digits on a clock that shows 0 at the start."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that loses the fewest digits of the times: its own, or one from its start."""
+    """Return the motion with the clock on which these times keep the most digits: its own, or one that starts at 0."""
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
@@ -424,12 +430,12 @@ class ClosedFormMotion(RestartableMotion):
 
     @property
     def form(self) -> ClosedForm:
-        """The kind of closed form, for example of a free body or a heavy top."""
+        """The kind of closed form from the table of closed forms, such as the free body or the heavy top."""
         return self._shared.form
 
     @cached_property
     def exact(self) -> Exact:
-        """The motion in closed form, from this initial state."""
+        """The closed form of the motion from this initial state, which can be evaluated at any time."""
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
@@ -549,7 +555,7 @@ class SciPyMotion(ShiftableMotion):
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return the options for SciPy's steps and error control, for given parameters of the rates."""
+        """Return SciPy's method and its limits for this motion, for given parameters of the rates."""
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)

@@ -29,7 +29,7 @@ def report(t: float, start: float, stop: float) -> None:
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Context manager: report each motion inside the block as a part of one whole motion from ``start`` to ``stop``, s.
+    """Context manager: progress inside the block is reported as progress of one motion from ``start`` to ``stop``, s.
 
     ``zero`` returns the time in the whole motion at which the clock of the part shows 0.
     """

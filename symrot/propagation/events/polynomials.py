@@ -44,7 +44,7 @@ class Piece(NamedTuple):
 
 
 def rows_of(stepper: Any, record: Floats) -> Floats:
-    """Return the recorded steps of a stepper (Taylor or DOP853) as rows of polynomial coefficients."""
+    """Convert the recorded steps of a stepper (Taylor or DOP853) to rows of polynomial coefficients, one per step."""
     if stepper.name == "taylor":
         return record
     count = len(record)
@@ -190,7 +190,7 @@ def fitted_pieces(
 ) -> Generator[Piece, None, None]:
     """Yield long pieces of polynomials that agree with a motion in closed form, which has no steps; see :func:`fitted`.
 
-    ``longest``, s, is a first guess of the interval of time that one polynomial can fit.
+    ``longest``, s, is a first guess of the length of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:
