@@ -92,7 +92,9 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Load the libraries of a closed form and return them: first the constants' (if there is one), then the loops'.
+    """Load the compiled libraries of a closed form and return them in a list.
+
+    The last one contains the loops over samples; the one before it, if there is one, computes the constants.
 
     Raises
     ------

@@ -74,7 +74,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for a plan, which may have another initial state; each is exact, rounded once."""
+        """Return the parameter values for a plan, which may have another initial state than the first plan.
+
+        Each value is computed exactly and rounded once.
+        """
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants

@@ -16,7 +16,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 def report(t: float, start: float, stop: float) -> None:
     """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; do nothing if no reporter is set.
 
-    Inside :func:`within`, the times are reported on the clock and span of the whole motion.
+    If the motion is a part of another motion (see :func:`within`), the progress of the whole motion is reported.
     """
     reporter = _reporter.get()
     if reporter is not None:

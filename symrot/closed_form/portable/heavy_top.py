@@ -284,7 +284,10 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2. Nearly equal roots are made equal."""
+    """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s.
+
+    The arguments are M (weight times distance), 2 (E - M), D and l. Nearly equal roots are made equal.
+    """
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)

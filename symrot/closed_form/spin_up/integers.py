@@ -41,7 +41,7 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of the values, at least one of which is not zero."""
+    """Return a power of two near the largest of the values, as a unit for rates; one of them must not be zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))

@@ -84,8 +84,9 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
+    """The constants of a driven body's motion far from resonance: W, s and the asymptotic series for kappa^2 = W^2/s.
 
+    W is the transverse angular velocity and s the rate at which the axial one, Omega, grows; resonance is at Omega = 0.
     :mod:`symrot.closed_form.spin_up.motion` explains these quantities.
     """
 

@@ -258,9 +258,9 @@ class _Search:
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
         """Return the intervals of a piece that may contain zeros: lists [event, start, end, sign before, sign after].
 
-        Times are in s; a sign of 0 is not known. Extrema whose distance from zero is less than the error of the motion
-        are added to ``doubts``. If the search takes more operations than the limit, which grows with the number of
-        rows, it ends early and the second result is an error; otherwise it is None.
+        Times are in s; the signs of the event's formula are 0 where they are not known. If an extremum of the formula
+        differs from zero by less than the error of the motion, it is added to ``doubts``. If the search takes more
+        operations than the limit, it ends early and the second result is an error; otherwise it is None.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
