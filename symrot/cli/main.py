@@ -394,7 +394,7 @@ def _explain_arguments(parser: ArgumentParser) -> None:
 
 
 def _emit_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or a scene file")
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument(

@@ -138,7 +138,12 @@ def _arguments(parser: ArgumentParser) -> None:
         default="scene",
         help="'uniform' draws the initial attitude at random from all rotations (default: the scene's own)",
     )
-    parser.add_argument("--sampling", metavar="WORD", default="random", help="random, latin or sobol (default: random)")
+    parser.add_argument(
+        "--sampling",
+        metavar="WORD",
+        default="random",
+        help="how values are drawn: random, latin or sobol (default: random)",
+    )
     parser.add_argument(
         "--count", metavar="N", help="number of trajectories (default: one for each point of the grids)"
     )

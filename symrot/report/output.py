@@ -119,7 +119,7 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
 
     An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``, and
     :func:`symrot.load` reads it. A CSV file contains comment lines, a line of column names, and numbers with all digits
-    (``pandas.read_csv(file, comment="#")``). The times of events are written too, and to an NPZ file the states at them.
+    (``pandas.read_csv(file, comment="#")``). The times of events are written too, in an NPZ file with the states.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class Window:
 
     @property
     def spacing(self) -> float:
-        """Degrees between the parallels of the grid: the widest spacing of the list GRIDS that fits four times."""
+        """Degrees between the parallels of the grid: the widest one in GRIDS that gives the window four parallels."""
         across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
