@@ -203,7 +203,7 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the parameters of the rates to bounds that limit the steps of SciPy's methods.
+    """Return a function that takes the parameters of the rates and returns bounds, by which SciPy's steps are limited.
 
     The bounds say how far the torque formulas can deviate from their values at the start of a step. Return None if no
     formula can have a pulse that a step misses, or if the rates have no Taylor series.

@@ -264,7 +264,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times in a span, s, to omega and quaternion, shape (n, 7)."""
+        """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

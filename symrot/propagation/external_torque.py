@@ -403,7 +403,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 

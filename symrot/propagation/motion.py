@@ -162,7 +162,7 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """The data that all motions of one plan integrated in C share: the setup, and the library of kernel and stepper."""
+    """The data shared by all motions of one plan that are integrated in C; adds the library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
@@ -194,7 +194,7 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """The data that all motions of one plan in closed form share: the setup and the kind of closed form."""
+    """The data shared by all motions of one plan that have a closed form; adds the kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
@@ -300,7 +300,7 @@ class Motion(ABC):
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
@@ -308,7 +308,7 @@ class Motion(ABC):
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def path(self, times: Floats) -> Callable[[Floats], Floats]:
-        """Return a function from times of the scene, s, to states, shape (n, N).
+        """Return a function that takes n times of the scene, s, and returns the states, shape (n, N).
 
         It is defined on the shortest interval that contains the start and all ``times``.
         """
@@ -326,7 +326,7 @@ class Motion(ABC):
         return lambda t: states(t - zero if zero else t)
 
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return a function from times, s, to omega, and to the quaternion if ``with_attitude``; shape (3 or 7, n).
+        """Return a function that takes n times, s, and returns omega, shape (3, n), or with the quaternion, (7, n).
 
         ``path`` is a result of :meth:`path`.
         """
@@ -354,7 +354,7 @@ class RestartableMotion(Motion):
 
 
 class SteppedInC(ABC):
-    """Interface of motions that a stepper in C integrates; :attr:`stepping` is the integration."""
+    """Interface of motions that a stepper in C integrates; the property ``stepping`` is the integration."""
 
     @property
     @abstractmethod
@@ -368,7 +368,7 @@ class ShiftableMotion(RestartableMotion):
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -461,7 +461,7 @@ class ClosedFormMotion(RestartableMotion):
         return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, and returns the states, shape (n, N); ``span`` is not used."""
         return lambda t: self.integrate(t)[0]
 
 
@@ -484,7 +484,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
@@ -519,7 +519,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
@@ -535,7 +535,7 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
@@ -571,7 +571,7 @@ class SciPyMotion(ShiftableMotion):
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)

@@ -256,7 +256,7 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; raise InputError for a subnormal double, as for numbers of a scene."""
+    """Return the exact value of a finite double as a Fraction; raise InputError if it is subnormal (too small)."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 

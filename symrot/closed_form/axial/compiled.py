@@ -216,7 +216,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return top/bottom rad in revolutions, as an integer and its number of bits after the binary point."""
+    """Convert top/bottom rad to revolutions: an integer, and its number of bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits

@@ -170,9 +170,9 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
+    """Return a function that takes an initial state and returns the motion of one driven body from it.
 
-    Constants that do not depend on the initial state are computed once.
+    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
     """
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])

@@ -67,7 +67,7 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one free body, whose given axes need not be principal.
+    """Return a function that takes an initial state and returns the motion of one free body in any body axes.
 
     Angular velocity and attitude refer to the given axes. The principal axes are known to 110 digits; the constants of
     the motion are computed from them before they are rounded to doubles.

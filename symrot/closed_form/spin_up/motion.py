@@ -128,9 +128,9 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
+    """Return a function that takes an initial state and returns the motion of one driven body from it.
 
-    Constants that do not depend on the initial state are computed once.
+    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)

@@ -103,9 +103,9 @@ class ZerosNotSeparated(PropagationError):
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
-        """Return the same error with ``epoch``, s, added to its time.
+        """Return the error with its time converted from the clock of the motion to time of the scene.
 
-        The result is the time of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        The clock shows 0 at the scene time ``epoch``, s.
         """
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros

@@ -60,7 +60,8 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 def _nested(terms: int) -> Floats:
     """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s.
 
-    Dense output is a weighted sum of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
+    Dense output gives the states inside a step as a weighted sum of s, s r, s^2 r, s^2 r^2, ..; here s is the fraction
+    of the step and r = 1 - s.
     """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)

@@ -192,7 +192,7 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion by SciPy as a function of time, see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy, computable at any time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
@@ -224,7 +224,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, computed in time since ``epoch`` and called with times that are not shifted."""
+    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch

@@ -32,9 +32,9 @@ class IntegrationStopped(PropagationError):
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the same error with ``epoch``, s, added to its times.
+        """Return the error with its times converted from the clock of the motion to times of the scene.
 
-        The results are times of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        The clock shows 0 at the scene time ``epoch``, s.
         """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples

@@ -235,7 +235,7 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A motion as a function from times to states, composed of the recorded steps of a stepper in C."""
+    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())

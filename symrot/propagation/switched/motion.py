@@ -104,7 +104,7 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:

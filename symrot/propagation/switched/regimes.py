@@ -163,7 +163,10 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the states and of the parameters of the output quantities whose values are zero."""
+        """Return the names of all states and parameters of output quantities that are zero at the state ``y``.
+
+        From them follows which arguments of sign functions stay zero without a torque.
+        """
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
@@ -226,7 +229,7 @@ def _distance(switch: Switch) -> Node:
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program with the additional parameters ``more``, which its outputs do not use."""
+    """Return the program with the additional parameters ``more``, which only the formulas of guards use."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

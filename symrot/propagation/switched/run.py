@@ -126,7 +126,7 @@ class SwitchedRun(RunState):
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Make ``zero``, which is the present time of the motion, the instant at which the clock shows 0."""
+        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``."""
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
@@ -275,7 +275,7 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Set the clock to 0 at the instant of a switch, which is the present time, unless the motion ends there."""
+        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there."""
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
