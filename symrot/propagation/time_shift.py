@@ -85,7 +85,10 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas for an epoch, s on the clock of the motion; each is exact, rounded once."""
+        """Return the values of all formulas for an epoch, s, each computed exactly and rounded once.
+
+        The epoch is given on the clock of the motion.
+        """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:

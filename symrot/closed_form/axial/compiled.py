@@ -231,5 +231,5 @@ def _nearest(top: int, bottom: int) -> float:
         return top / bottom
     except OverflowError:
         raise InputError(
-            "expected a torque, damping and angular velocity whose rates are finite doubles, got more than 1e308"
+            "expected a torque, damping and angular velocity whose rates are finite doubles, got rates above 1e308"
         ) from None

@@ -80,10 +80,10 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of doubtful rows.
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of the rows in doubt.
 
-    Doubtful rows must be computed exactly. ``moments`` are principal moments and ``omega`` angular velocities along the
-    principal axes, both of shape (n, 3).
+    Rows are in doubt if their last digit is not certain; the caller must compute them exactly. ``moments`` are
+    principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)

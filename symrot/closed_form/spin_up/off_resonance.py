@@ -108,7 +108,10 @@ class Sweep:
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the correction delta, rad, by which the angle of rotation exceeds the integral of S."""
+        """Return the correction delta, rad: the angle of rotation minus the time integral of the rate S of rotation.
+
+        In the rotating axes, S = sqrt(Omega^2 + W^2) with the axial rate Omega and the transverse rate W.
+        """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 

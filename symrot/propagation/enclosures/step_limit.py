@@ -262,7 +262,7 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as :meth:`__call__`, but evaluate the terms one by one, as :class:`Disc` objects.
+        """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed by :class:`Disc`.
 
         These also contain logarithms of sizes, so that fewer bounds are infinite.
         """

@@ -175,7 +175,9 @@ class SwitchedSystem:
                 ]
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
-                        raise InputError(f"torque: {switch.label} contains a function along which the motion slides")
+                        raise InputError(
+                            f"torque: the motion slides along a function inside {switch.label}, which then has no value"
+                        )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
             self._regimes[key] = self._regime_of[content]
@@ -236,9 +238,9 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
 
-    The values are given by ``modes``; functions without effect are left out. The formulas become linear in the ``held``
-    modes, of functions whose arguments stay at zero. A mode in ``tied`` is replaced by the held mode that equals it up
-    to sign, if its function jumps.
+    The values are given by ``modes``; functions without effect are left out. For functions whose arguments stay at zero
+    (``held``), the formulas become linear in their values. ``tied`` names functions whose value is the value of a held
+    function or its negative, and is replaced by it.
     """
     if not isinstance(torque, FormulaTorque):
         return torque
