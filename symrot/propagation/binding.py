@@ -21,12 +21,12 @@ __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
 def one_double(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to the ratio top/bottom, in a tuple of length 1: a rounding for :class:`Binding`."""
+    """Return the double nearest to the ratio top/bottom, in a tuple of length 1, as :class:`Binding` expects it."""
     return (top / bottom,)
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return two doubles whose sum approximates the ratio top/bottom to 31 digits: a rounding for :class:`Binding`.
+    """Return two doubles whose sum approximates the ratio top/bottom to 31 digits, as :class:`Binding` expects them.
 
     They are the double nearest to the ratio, and the rounded remainder.
     """

@@ -51,7 +51,10 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the Taylor coefficients of the attitude at x = ``place``, whose denominator is a power of two."""
+        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``.
+
+        ``spinor`` is the attitude there; the denominator of ``place`` is a power of two.
+        """
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
