@@ -167,9 +167,10 @@ class Frame:
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Return an attitude converted to these axes of body and space, as 8 doubles: hi and lo of each component.
+        """Convert an attitude to the axes of body and space in which the formulas of a heavy top hold.
 
-        They are rounded as in :func:`symrot.closed_form.arithmetic.pairs.attitude`.
+        The result is 8 doubles, hi and lo of each component of the quaternion, rounded as in
+        :func:`symrot.closed_form.arithmetic.pairs.attitude`.
         """
         if self.plain:
             return attitude(quaternion)

@@ -1,8 +1,8 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
 The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude. Numbers
-have 120 digits, so that differences may lose many of them and the constants follow directly from the roots of the
-cubic.
+have 120 digits. Differences may therefore lose many digits, so that the constants are computed directly from the roots
+of the cubic, without the rearrangements that doubles need.
 """
 
 from typing import Any

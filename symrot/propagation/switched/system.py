@@ -239,8 +239,8 @@ def _chosen(
     """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
 
     The values are given by ``modes``; functions without effect are left out. For functions whose arguments stay at zero
-    (``held``), the formulas become linear in their values. ``tied`` names functions whose value is the value of a held
-    function or its negative, and is replaced by it.
+    (``held``), the formulas become linear in their values. Functions in ``tied`` have the value of a held function
+    or its negative, which replaces them.
     """
     if not isinstance(torque, FormulaTorque):
         return torque
