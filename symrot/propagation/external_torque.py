@@ -239,7 +239,9 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
     edges, coefficients, knots = [], [], [float(t[-1])]
     for low, high in pairwise(cuts):
         if high - low < 2:
-            raise InputError(f"torque: expected two samples or more between switching times, got one at {t[low]} s")
+            raise InputError(
+                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
+            )
         spline = CubicSpline(t[low:high], values[low:high])
         _check_overshoot(spline, float(np.abs(values).max()))
         edges.append(spline.x[:-1])

@@ -405,9 +405,9 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: the guards that are negative just after the start of a piece, and at its end.
+        """Return two lists of guards: those that are negative just after the start of a piece, and those at its end.
 
-        A negative guard means that its function (sign, floor, ..) should have switched. ``active`` and ``values``
+        A guard is negative if its function (sign, floor, ..) should have switched. ``active`` and ``values``
         belong to the present modes.
         """
         formulas = [guard.formula for guard in regime.guards]
