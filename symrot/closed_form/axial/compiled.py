@@ -166,10 +166,10 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor from the angle of rotation, rad, to `lag` or `half` of :meth:`moving`, in revolutions.
+        """Return the ratio of `lag` or `half` (see :meth:`moving`), in revolutions, to the angle of rotation, rad.
 
-        The factor is an integer and the number of its bits after the binary point. The third result lists constants of
-        that angle for C that do not depend on the initial state.
+        The ratio is given as an integer and the number of its bits after the binary point. The third result lists the
+        constants of `lag` or `half` for C that do not depend on the initial state.
         """
         turn, bits = _HALF
         if turned:
