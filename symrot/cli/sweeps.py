@@ -20,7 +20,7 @@ _TIMES = "'linspace(0, 10, 11)' or 'values(0, 1, 5)'"
 
 
 def _vary(texts: list[str]) -> dict[str, Any]:
-    """Return the law of each name in texts such as ``omega_1 ~ normal(0, 0.1)``."""
+    """Return, by name, the distributions and grids in texts such as ``omega_1 ~ normal(0, 0.1)``."""
     from symrot.sweeps.laws import Distribution, read_law
 
     laws: dict[str, Any] = {}

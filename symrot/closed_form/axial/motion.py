@@ -91,7 +91,7 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis."""
+        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis, at times t."""
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)

@@ -78,10 +78,10 @@ def _inverse(a: Disc) -> Disc:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return a disc that contains the square root of a disc.
+    """Return a disc that contains the square roots of all numbers in a disc.
 
     If the disc contains zero, the root has no Taylor series there. The radius is then the size of the root times
-    ``whole``, which is 1 divided by the missed share; see :file:`disc.h`.
+    ``whole``, which is 1 divided by the missed share (see the module's text).
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:

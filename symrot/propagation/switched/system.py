@@ -33,7 +33,7 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 class SwitchedSystem:
     """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) in between.
 
-    There is one regime for each set of guards that are held at zero.
+    There is one regime for each set of functions whose arguments stay at zero while the motion slides.
     """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
