@@ -35,7 +35,7 @@ from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
 
-TARGETS = ("c", "numpy", "js")
+TARGETS = ("c", "numpy", "js", "jax")
 PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
@@ -499,7 +499,7 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
     **cli_exercises.COMMANDS,
-    "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
+    "emit": ("print a kernel of the library or of a scene as C, NumPy, JavaScript or JAX", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),

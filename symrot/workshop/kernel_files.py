@@ -35,7 +35,7 @@ __all__ = [
     "write_files",
 ]
 
-SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",), "jax": (".py",)}
 RECHECK = "recheck.py"  # the program that checks certificates without symrot
 SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernels are directly in the target's folder
 
