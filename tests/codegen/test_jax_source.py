@@ -105,9 +105,10 @@ def parse_symbol():
     return Symbol("x", real=True)
 
 
-def test_the_operations_are_those_of_the_c_text():
-    for name in kernel_names():
-        compare_jax(text_of(name), name, c_functions(kernel_program(name)))
+@pytest.mark.thinned(8)
+@pytest.mark.parametrize("name", kernel_names())
+def test_the_operations_are_those_of_the_c_text(name):
+    compare_jax(text_of(name), name, c_functions(kernel_program(name)))
 
 
 def test_a_constant_may_have_the_name_of_a_word_of_python():
