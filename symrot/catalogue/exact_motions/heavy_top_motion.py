@@ -227,8 +227,9 @@ def _theta(d: Derivation) -> None:
             display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
-            rf"The imaginary part is, up to a constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of $w$ is "
-            rf"chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,\frac{{p_\phi {sign} p_\psi}}"
+            rf"The imaginary part is, up to a constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of "
+            rf"$w$ is chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,"
+            rf"\frac{{p_\phi {sign} p_\psi}}"
             r"{2 A\,p\,(u_2 - u_1)}$.",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,
