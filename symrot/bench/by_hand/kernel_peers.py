@@ -224,7 +224,7 @@ def _counted_casadi(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
     """Return a function of CasADi in which common subexpressions are computed once, and its operations by kind."""
     import casadi
 
-    function = casadi.Function("peer", [x], [casadi.cse(outputs)])
+    function = casadi.Function("peer", [x], [casadi.densify(casadi.cse(outputs))])
     kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
              "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
     by_number = {getattr(casadi, kind): operation for kind, operation in kinds.items()}
