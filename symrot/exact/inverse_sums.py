@@ -139,9 +139,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
     return None
 
 
-def _principal_multiple(
-    ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]
-) -> PrincipalValueProof | None:
+def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
     """Return a proof of where a combination of two inverse functions is zero, as ``asin(3*x - 4*x^3) - 3*asin(x)`` is.
 
     If S is proven to be the sine of w = 3 asin(x), the difference is zero exactly where w lies in [-pi/2, pi/2]. These

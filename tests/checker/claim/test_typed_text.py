@@ -292,7 +292,9 @@ def test_tr_is_the_trace():
     assert symrot.check("tr == 2*x").verdict == "definition"
 
 
-@pytest.mark.parametrize("claim", ["tan^-1 x + cot^-1 x = π/2", r"\cot^{-1} x = \tan^{-1}(1/x)", "acot(x) == atan(1/x)"])
+@pytest.mark.parametrize(
+    "claim", ["tan^-1 x + cot^-1 x = π/2", r"\cot^{-1} x = \tan^{-1}(1/x)", "acot(x) == atan(1/x)"]
+)
 def test_the_inverse_of_cot_is_asked_about(claim):
     """Books define it as atan(1/x) or as pi/2 - atan(x), which differ for x < 0."""
     with pytest.raises(InputError, match="one of the two conventions for the inverse of cot"):
