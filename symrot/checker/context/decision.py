@@ -363,7 +363,7 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether a decision does not tell if two formulas are equal: undecided, or true for some signs of symbols.
+    """Return whether a decision leaves open that two formulas are equal: undecided, or true for some signs of symbols.
 
     Formulas that are equal for special values only, such as equal moments of inertia, are different formulas.
     """

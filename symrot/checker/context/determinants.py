@@ -86,7 +86,7 @@ def _is_determinant(tree: Node, generic: set[str]) -> bool:
 
 
 def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
-    """Return the known determinants that equal a formula up to sign, those of the usual sequences first."""
+    """Return the rate Jacobians whose determinant equals a formula up to sign, those of the usual sequences first."""
     try:
         value = claim.interpreter().read(formula)
     except InputError:
@@ -116,7 +116,7 @@ def _is_equal(first: Expr, second: Expr) -> bool:
 
 
 def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit turns a formula into such a determinant; otherwise None."""
+    """Return the verdict "doubtful" if one edit makes a formula the determinant of a rate Jacobian; otherwise None."""
     numeric = NumericFilter(claim)
     edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
     repairs: dict[str, Repair] = {}

@@ -42,7 +42,7 @@ class Quantity:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """The title and the synonyms in lower case and a single spelling."""
+        """The title and the synonyms in lower case and in one spelling."""
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 

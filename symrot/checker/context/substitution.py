@@ -83,7 +83,7 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict that the ways to read a claim imply, or ``verdict`` if they say nothing new.
+    """Return the verdict that follows from the possible ways to read a claim, or ``verdict`` if they add nothing.
 
     The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that there is
     no other way, the claim is false if it is false in all of them.

@@ -221,7 +221,7 @@ class NamesPart(SumsPart):
         r"""Parse ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
-            raise self.fail("the terms of a sum with +", sign)
+            raise self.fail("the terms of the sum, joined by +,", sign)
         self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
         return self.factor()
 

@@ -1,1 +1,1 @@
-"""Recognition of formulas: a look-up of the formula, among those that symrot derives, to which a formula is equal."""
+"""Recognition of formulas: finding the formula, among those that symrot derives, to which a formula is equal."""

@@ -134,7 +134,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield the scalars by which a term may have to be multiplied."""
+    """Yield the scalars that may be missing as a factor of a term."""
     made: dict[Node, None] = {}
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

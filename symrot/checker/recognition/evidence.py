@@ -158,7 +158,7 @@ def misfit_of(name: str, known: str) -> float:
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether one of several words is in the name of a known formula; an angular velocity is no velocity."""
+    """Return whether a known formula's name has one of several words; an angular velocity is not a velocity here."""
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 

@@ -219,7 +219,7 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether each hypothesis names a formula, or says that a vector or quaternion has length one.
+    """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
 
     Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known
     formulas.

@@ -266,7 +266,7 @@ def is_multiple(part: Part) -> bool:
 
 
 def multiples(part: Part) -> Iterator[Change]:
-    """Yield the part with the other sign or with another number, if that gives it the right values."""
+    """Yield the change of a part's sign or numeric factor that gives the part the values it should have."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return
