@@ -157,9 +157,7 @@ def _det(scope: Scope, node: Node) -> Expr:
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(
-            node, f"a matrix whose determinant expands into at most {most_products} products, not {products},"
-        )
+        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products, not {products},")
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
 
 
@@ -193,7 +191,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
         raise scope.fail(
-            node.args[0], f"a matrix whose determinant expands into at most {LARGEST_INVERSE} products, not {products},"
+            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products, not {products},"
         )
     return matrix.adjugate(method="berkowitz")
 

@@ -1,7 +1,7 @@
 """Claims about a free symmetric body, whose axis, angular momentum and angular velocity lie in one plane.
 
-The tangents of the angles between them have the ratio of the moments. Claims may be solved for either angle, and books
-use the same letters for both.
+The tangents of the two angles to the axis have the ratio of the moments of inertia. Claims may be solved for either
+angle, and books use the same letters for both.
 """
 
 import re

@@ -196,7 +196,7 @@ _OF_AXES = re.compile(
 
 
 def _has_line(body: Body, line: str) -> bool:
-    """Return whether a body has a line such as a diameter; True for a place that is no line."""
+    """Return whether a body has a line such as a diameter; True if ``line`` is the title of a place that is no line."""
     return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
 
 

@@ -82,7 +82,7 @@ class Point:
     spent : list of int
         A count of multiplications, for a budget; it is shared by all points made from this one.
     weight : int
-        The multiplications of floats in one of values: three times as many for each lift to dual numbers.
+        The cost of multiplying two values, in float multiplications; each lift to dual numbers triples it.
     known : dict
         Stored values of trees.
     lifted : dict
