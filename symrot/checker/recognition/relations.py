@@ -372,7 +372,7 @@ def _free() -> Iterator[Relation]:
 
 
 def _planar() -> Iterator[Relation]:
-    """Yield the torques that hold the axis of a body which rotates about z and has products of inertia."""
+    """Yield the torques that keep the axis fixed, for a body that rotates about z and has products of inertia."""
     about, rate = Matrix([0, 0, symbols.omega_3]), Matrix([0, 0, symbols.domega_3])
     needed = TENSOR * rate + about.cross(TENSOR * about)
     for torque, value in zip(symbols.torque_b, needed, strict=True):
