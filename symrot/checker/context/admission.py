@@ -111,9 +111,9 @@ DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "x
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether a formula, by its name, is for one of the given axes.
+    """Return whether a formula, by its name, is for one of the given ``axes``.
 
-    It is if its body is neither round nor a rod.
+    For a body that is neither round nor a rod, any axis is accepted.
     """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
@@ -240,8 +240,8 @@ def plain(name: str) -> str:
 def guesses(context: Context, name: str, stated: str) -> list[str]:
     """Return the words in a derived formula's name that neither the context nor the name of the quantity implies.
 
-    They are guessed if the formula is taken. ``stated`` are the words that the quantity's name implies, such as
-    "moment of inertia z axis" for I_zz.
+    A verdict that relies on the formula guesses these words. ``stated`` are the words that the quantity's name
+    implies, such as "moment of inertia z axis" for I_zz.
     """
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:

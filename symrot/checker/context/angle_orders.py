@@ -53,7 +53,7 @@ def letter_of_angle(name: str) -> str:
 
 
 def place_by_words(title: str, sequence: str) -> int | None:
-    """Return the place (0, 1, 2) in a sequence of an angle called "yaw" or "spin angle"; None if it has no place there.
+    """Return the place (0, 1 or 2) of an angle in a sequence by its title, "yaw" or "spin angle"; None if unknown.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """The context of a claim, which a person states in words: it is parsed and checked for contradictions here.
 
-With a context, a claim that only gives a quantity a formula can be decided: the words say which known formula is meant.
+With a context, a claim that gives a formula for a quantity can be decided: the words say which known formula is meant.
 """
 
 import re
@@ -286,7 +286,7 @@ def _meaning(text: str, prefix: str) -> Meaning:
 
 
 def _original(rest: str, words: str) -> str:
-    """Return the words ``rest``, which are in lower case, in the upper and lower case of ``words``."""
+    """Return the words ``rest``, which are in lower case, with the capital letters that they have in ``words``."""
     cases = {word.lower().strip(","): word.strip(",") for word in words.split()}
     return " ".join(cases.get(word.strip(","), word) for word in rest.split())
 
@@ -326,7 +326,7 @@ def letters_of(tree: Node) -> Iterator[str]:
 
 
 def _name(tree: Node) -> str | None:
-    """Return the name of a name or rate, with ``d`` in front for each time derivative; None for a formula."""
+    """Return the name if a tree is a name or rate, with ``d`` in front for each time derivative; None for a formula."""
     if tree.kind == "name":
         return str(tree.value)
     if tree.kind == "call" and tree.value == "diff":

@@ -110,7 +110,7 @@ class Meant:
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that gives a quantity a formula, in the context of the claim.
+    """Return the verdict, in its context, on a claim that gives a formula for a quantity.
 
     ``verdict`` is "recognised", "doubtful" or "definition", by the known formulas that fit the context. If symrot
     does not use some words of the context, the claim is called neither true nor false, and a note lists these

@@ -13,7 +13,7 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that relations between rates, components, momenta and energies imply.
+    """Return the verdict that the relations between rates, components, momenta and energies imply for a claim.
 
     It is ``verdict`` if these relations do not decide the claim.
     """

@@ -20,7 +20,7 @@ __all__ = ["by_other_sizes"]
 
 @dataclass(frozen=True)
 class Size:
-    """The letters of one other choice of dimensions, such as d for a diameter, and the bodies it is used for.
+    """Another choice of dimensions than symrot's, such as diameters, with its letters and the bodies it is used for.
 
     ``letters`` maps them to symrot's letters, and ``factor`` is symrot's dimension divided by the author's.
     """

@@ -252,9 +252,9 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse, with ``read``, what is under a mark, and the subscript and primes after it:
+        r"""Parse what is under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``.
 
-        ``\dot{\mathbf{H}}_G``.
+        ``read`` parses it.
         """
         scripts = []
         while script := self.script("_") or self.script("'"):

@@ -163,7 +163,7 @@ def has_word(known: str, words: Sequence[str] | None) -> bool:
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a formula near a known one more likely has a fault than that it is another formula."""
+    """Return whether a formula near a known one is more likely to have a fault than to be another formula."""
     letters, words = names_in(named.formula), words_of(named)
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
@@ -327,7 +327,7 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return 0, 1 or 2: one for another component and one for another frame than a quantity's name implies."""
+    """Count a known formula's contradictions to a quantity's name: one for another component, one for another frame."""
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip

@@ -74,9 +74,9 @@ LETTERS = {
 
 @dataclass(frozen=True)
 class View:
-    """One arrangement of a formula's entries, such as the transpose:
+    """One arrangement of a formula's entries, such as the transpose.
 
-    ``how`` in words, its shape, the entries' order.
+    ``how`` says in words how it differs from the formula; ``order`` gives the numbers of the entries.
     """
 
     how: str

@@ -107,7 +107,7 @@ class PointOfLetters(Point):
 
 
 def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
-    """Return a matrix with the derivatives of its entries, which are functions of time, in their places."""
+    """Return a matrix in which the derivatives of its entries, which are functions of time, replace the entries."""
     if tree.kind == "call" and tree.args == (TIME,):
         return Node("call", "diff", (tree, *variables))
     return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
@@ -122,7 +122,7 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield the parts of a formula whose right values can be computed from the formula's, outer parts first."""
+    """Yield the parts of a formula whose right values follow from those of the whole formula, outer parts first."""
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
@@ -213,7 +213,7 @@ def _of_product(arguments: Sequence[Any], place: int, needed: Any) -> Any:
 
 
 def _ratio(left: Any, right: Any) -> float | None:
-    """Return the number that multiplies the right value to give the left one; None if there is no such number."""
+    """Return ``left / right`` as one number, for scalars or proportional matrices; None if there is no such number."""
     if not is_matrix(left):
         return left / right if right else None
     pairs = list(zip(entries_of(left), entries_of(right), strict=True))

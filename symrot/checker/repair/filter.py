@@ -243,7 +243,7 @@ class OpenEntries:
     alone: tuple[Path, ...]
 
     def __call__(self, path: Path) -> bool:
-        """Return whether the part at a path may be changed: it is outside of all entries, or in the only wrong one."""
+        """Return whether the part at a path may be changed: it is in no matrix entry, or in the only wrong one."""
         inside = next((cell for cell in self.cells if path[: len(cell)] == cell), None)
         return inside is None or inside in self.alone
 
