@@ -70,7 +70,7 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield what in a derived formula's name contradicts the context: "for the space frame", "about an end"."""
+    """Yield contradictions between a derived formula's name and the context: "for the space frame", "about an end"."""
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):

@@ -1,4 +1,4 @@
-"""Verdicts in a context: if the meanings of its names are stated, a claim that gives a quantity a formula is decided.
+"""Verdicts in a context: once the meanings of names are stated, a claim that gives a formula for a quantity is decided.
 
 A known formula is meant if the context, or the name of the quantity, states every word of the formula's name. The claim
 is true if it is equal to such a formula. It is false if it differs from all of them, for every assignment of its

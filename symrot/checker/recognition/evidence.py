@@ -312,7 +312,7 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words of which the name of a known formula for the quantity has one; None if it may have any name."""
+    """Return words, one of which must be in the name of a known formula for the quantity; None if any name will do."""
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
         words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector

@@ -255,7 +255,7 @@ def _top() -> tuple[Matrix, Expr]:
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield conditions of steady precession, under a weight and under a torque, with either measure of the spin."""
+    """Yield conditions of steady precession under a weight or torque, with the spin or the rate of the spin angle."""
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):

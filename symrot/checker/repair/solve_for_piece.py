@@ -342,10 +342,7 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
 
 
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return the cost of inserting a product:
-
-    ``least``, more for a long product, and more for a number in front of it.
-    """
+    """Return the cost of inserting a product; it grows with the length of the product and a number in front of it."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
     return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
