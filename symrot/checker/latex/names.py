@@ -226,7 +226,7 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record a name as a vector or tensor whose components have no names yet; return its node, marked with MARK."""
+        """Record a name as a vector or tensor that needs names for its components; return its node, ending in MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK

@@ -193,9 +193,9 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula of the usual kind, or None.
+    """Return the fingerprint of a formula of the usual kind; None for any other formula.
 
-    It has a value where all atoms are equal, and changes if any single atom changes.
+    A formula of the usual kind has a value where all atoms are equal, and changes if any single atom changes.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
