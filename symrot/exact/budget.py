@@ -68,5 +68,5 @@ def spend_ring() -> None:
     if budget.left < 0:
         raise TooLarge(
             f"expected a formula that needs at most {MOST_RINGS} conversions of nested parts to "
-            "polynomials, got more; split it"
+            "polynomials, got more; split the formula"
         )

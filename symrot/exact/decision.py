@@ -193,7 +193,7 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return the decision "true" if open entries become equal once arguments of functions are shortened; else None."""
+    """Return the decision "true" if open entries are equal once arguments of functions are simplified; else None."""
     ring = case.ring
     try:
         proofs = [

@@ -95,7 +95,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof, by ``rings``, that an expression is zero under conditions.
+    """A proof, computed in the polynomial rings ``rings``, that an expression is zero under two kinds of conditions.
 
     The formulas ``nonnegative`` must be nonnegative, and the formulas ``positive`` positive.
     """
@@ -106,7 +106,7 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof of where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
+    """Return a proof that ``asin(S) - w`` is zero for certain w, if ``S = sin w`` is proven; also acos, atan, atan2.
 
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
     between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
@@ -138,7 +138,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if ``y cos w = x sin w`` is proven; otherwise None.
 
     The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
@@ -158,7 +158,7 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None.
 
     For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
     positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in

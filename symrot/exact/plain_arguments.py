@@ -1,4 +1,4 @@
-"""Functions of an argument that can be shortened: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
+"""Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
 The ring has one variable for the value of each function that it does not know. If two arguments are proven equal, so
 are the functions of them; so each argument is replaced by its normal form before the formula is read.
@@ -28,9 +28,9 @@ MOST_COMPARED = 8
 def with_plain_arguments(
     formulas: Sequence[Expr], hypotheses: Sequence[Expr] = (), domain: Sequence[Expr] = ()
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
-    """Return formulas in which the arguments of functions are in normal form, and the rings in which that is proven.
+    """Return formulas with the arguments of functions in normal form, and the rings in which these were computed.
 
-    The formulas are equal to the given ones wherever no divisor of these rings is zero. The rings are empty if no
+    The results equal the formulas passed in wherever no divisor of these rings is zero. The rings are empty if no
     argument contains a function, a root or a divisor.
     """
     formulas, rings = list(formulas), []

@@ -93,7 +93,7 @@ def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return the expressions of a chain without repetitions of the expression before."""
+    """Return a chain without the expressions that merely repeat the expression before them."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:

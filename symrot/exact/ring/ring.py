@@ -433,8 +433,9 @@ class FormulaRing:
                 pairs.append(self._fine_constant(coefficient))
                 continue
             multiple = int(coefficient / self.bases[atom])
-            if abs(multiple) > MOST_MULTIPLES // (1 + 7 * (atom is pi)):
-                raise TooLarge(f"expected angles up to {MOST_MULTIPLES} times another angle, got {argument}")
+            most = MOST_MULTIPLES // (1 + 7 * (atom is pi))
+            if abs(multiple) > most:
+                raise TooLarge(f"expected an angle of at most {most} times {self.bases[atom] * atom}, got {argument}")
             first, second = chebyshev(abs(multiple))
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
