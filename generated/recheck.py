@@ -1530,17 +1530,17 @@ def check_files(path):
             check_law(law, specification, 64 if has_choices(data) else 8)
         for function in readback:
             check_precision(function, data, specification, kernels)
-    return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
+    return f"{name}: {len(files)} hashes, the C text of {' and '.join(readback)} and their batches, and the laws hold"
 
 
 def check(path):
-    """Check a certificate; return one line that lists the checks, or raise ValueError or OSError with one sentence."""
+    """Check a certificate; return one line that lists the checks, or raise an error whose message is one sentence."""
     try:
         return check_files(path)
     except (ValueError, OSError):
         raise
     except RecursionError:
-        raise ValueError("expected fewer nested parentheses and calls, got too many") from None
+        raise ValueError("expected fewer nested parentheses and function calls, got too many") from None
     except (ArithmeticError, MemoryError) as reason:
         raise ValueError(f"expected numbers within the range of a double, got others ({reason!r})") from None
 
@@ -1551,7 +1551,7 @@ def main(paths):
         sys.exit("usage: python recheck.py NAME.cert.json ..")
     for path in paths:
         try:
-            print(f"{check(Path(path))}: hold")
+            print(check(Path(path)))
         except (ValueError, OSError) as reason:
             sys.exit(f"{path}: {reason}")
 

@@ -54,7 +54,7 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether all object code equals the C text under every set of flags that must preserve its bits."""
+    """Return whether all object code made with flags that must preserve the bits of results performs the C text."""
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 

@@ -384,9 +384,10 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Divide a polynomial by the relations, and write the remainder with hypotheses times cofactors of a degree.
+        """Write a polynomial as a sum of cofactors times relations and hypotheses; return the cofactors and the rest.
 
-        Return the cofactors of relations and hypotheses, and what remains: zero, or the remainder of the division.
+        The cofactors of the hypotheses have at most the degree ``degree``. The rest is zero if such cofactors exist,
+        otherwise it is the remainder of the division by the relations alone.
         """
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)

@@ -232,7 +232,7 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the pack of up to four pairs (sign, series); an unused lane (None) gets one that needs no time."""
+        """Return the pack of up to four pairs (sign, series); an unused lane (None) costs no extra time."""
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
