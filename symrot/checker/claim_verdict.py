@@ -6,6 +6,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from symrot.checker.claim.claims import Claim, relation_text
+from symrot.checker.claim.differentiation import as_functions, is_rule
 from symrot.checker.claim.named_formula import NamedFormula, named_formula, open_formula, related_formula
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
@@ -49,7 +50,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            named = _on_name(claim, repair, named_formula) or _on_name(claim, repair, open_formula)
+            named = _on_name(claim, repair, named_formula) or _on_rule(claim)
+            named = named or _on_name(claim, repair, open_formula)
             decision, verdict = named or _decide(claim)
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
@@ -131,6 +133,16 @@ def _on_name(
             by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
             verdict = by_name if by_name.verdict == "doubtful" else by_hypotheses
     return None, _completed(claim, replace(verdict, text=claim.text), start)
+
+
+def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
+    """Return (None, verdict) for a rule of differentiation that is decided for all functions; None for other claims."""
+    if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
+        return None
+    decision, verdict = _decide(general)
+    if decision.verdict not in ("true", "conditional") and not (decision.verdict == "false" and is_rule(general)):
+        return None
+    return None, replace(verdict, text=claim.text, notes=general.notes)
 
 
 def _was_near_relation(claim: Claim) -> bool:
