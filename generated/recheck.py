@@ -873,7 +873,7 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Return whether the next words are those of a phrase."""
+        """Return whether the next words are ``phrase``; do not move past them."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
