@@ -1,7 +1,7 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
-The ring has one variable for the value of each function that it does not know. If two arguments are proven equal, so
-are the functions of them; so each argument is replaced by its normal form before the formula is read.
+The polynomial ring has one variable for each call of a function that it does not know. A function has equal values at
+equal arguments, but the ring has one variable for each; so arguments are replaced by their normal forms first.
 """
 
 from collections.abc import Sequence

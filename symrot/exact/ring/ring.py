@@ -445,7 +445,9 @@ class FormulaRing:
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
             if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
-                raise TooLarge(f"the sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms when expanded")
+                raise TooLarge(
+                    f"the expanded sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms; split the formula"
+                )
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
         turned = Ratio(cosine), Ratio(sine)
         for pair in pairs:
