@@ -91,7 +91,7 @@ def object_lines(text: str, path: Path, where: str) -> list[str]:
     refused = [verdict for verdict in verdicts if not verdict.accepted]
     if refused:
         raise CertificateError(f"{path}: {refused[0].sentence()}")
-    text_lines = [f"{path}: {verdict.function} is the C text, {HOLDS[verdict.verdict]}" for verdict in verdicts]
+    text_lines = [f"{path}: {verdict.function} performs the C text, {HOLDS[verdict.verdict]}" for verdict in verdicts]
     return [*text_lines, f"{path}: loops over samples are not compared; the certificate says what flags do to them"]
 
 
