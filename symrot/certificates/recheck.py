@@ -1538,7 +1538,7 @@ def check(path):
     except (ValueError, OSError):
         raise
     except RecursionError:
-        raise ValueError("expected fewer nested parentheses and function calls, got too many") from None
+        raise ValueError("expected fewer nested parentheses and calls, got too many") from None
     except (ArithmeticError, MemoryError) as reason:
         raise ValueError(f"expected numbers within the range of a double, got others ({reason!r})") from None
 
