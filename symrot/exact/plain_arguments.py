@@ -48,7 +48,7 @@ def with_plain_arguments(
 
 
 def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return the normal form of each argument, and the further rings of the proofs.
+    """Return the normal form of each argument, and the polynomial rings in which equal arguments were proven equal.
 
     Arguments that are proven equal get the same normal form.
     """
@@ -68,7 +68,10 @@ def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, 
 def proof_by_arguments(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` with all arguments of functions in normal form; return the rings of the proof, or None."""
+    """Prove ``left = right`` with all arguments of functions in normal form.
+
+    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
     if (shorter, other) == (left, right):
         return None
