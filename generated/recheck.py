@@ -1002,7 +1002,7 @@ def certified(path):
     except RecursionError:
         raise ValueError(f"{path.name}: expected a certificate, got lists nested too deeply") from None
     except (json.JSONDecodeError, UnicodeDecodeError) as reason:
-        raise ValueError(f"{path.name}: expected JSON, but the text of the certificate is not JSON ({reason})") from None
+        raise ValueError(f"{path.name}: expected JSON, but the text is not JSON ({reason})") from None
     check_shape(data, {"schema": TEXT, "seal": TEXT, "kernel": TEXT, "files": {str: TEXT}}, "certificate")
     sealed = {key: value for key, value in data.items() if key != "seal"}
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
