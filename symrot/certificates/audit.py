@@ -207,7 +207,7 @@ def _bounds(path: Path, data: Data, source: str) -> str:
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)
     check_bounds(section, double, single)
-    return "bounds of rounding errors equal those that symrot computes on the certificate's box, chosen by the user"
+    return "bounds of rounding errors equal those that symrot computes for these operations on the certificate's box"
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:

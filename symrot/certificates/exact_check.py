@@ -481,7 +481,7 @@ def check(path):
     checked = " and ".join(readback)
     laws = "1 law of the formulas holds" if len(data["laws"]) == 1 else f"{len(data['laws'])} laws of the formulas hold"
     return (
-        f"{name}: {len(files)} hashes agree, the C text of {checked} and their batches computes the formulas, "
+        f"{name}: {len(files)} hashes agree, the C text of {checked} (also of batches) computes the formulas, "
         f"{laws} (bounds not checked)"
     )
 

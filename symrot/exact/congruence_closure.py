@@ -26,7 +26,10 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions by equal ones; return the rings of the proof, or None."""
+    """Prove ``left = right`` by replacing inverse functions by equal ones.
+
+    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    """
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
@@ -50,7 +53,7 @@ def _equal_pairs(
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
     """Yield pairs of symbols for inverse functions that are proven equal, or to have the sum pi/2.
 
-    Each is yielded as (symbol, its value by the other symbol, the rings of the proof).
+    Each is yielded as (symbol, its value by the other symbol, the polynomial rings in which the proof computes).
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

@@ -34,22 +34,25 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a factor to be zero: all ``numerators``, polynomials of another ring, are zero."""
+    """A sufficient condition for a polynomial to be zero: all ``numerators``, polynomials of ``ring``, are zero."""
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero, by the relations of the ring or because one factor is zero."""
+    """Return whether a polynomial of the ring is proven to be zero, such as the numerator of left - right.
+
+    The proof uses the relations of the ring, or shows that one factor of the polynomial is zero.
+    """
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that a numerator is zero; return the further rings of the proof, or None if no proof was found.
+    """Prove that a polynomial of the ring is zero, such as the numerator of left - right.
 
-    The tuple is empty if the relations of ``ring`` suffice. The proof holds where no divisor of the further rings is
-    zero.
+    Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
+    relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -64,7 +67,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which suffices to make a factor of a numerator zero.
+    """Yield conditions, each of which suffices to make a factor of a polynomial (``numerator``) zero.
 
     With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
@@ -106,8 +109,9 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that ``asin(S) - w`` is zero for certain w, if ``S = sin w`` is proven; also acos, atan, atan2.
+    """Return a proof that a factor ``asin(S) - w`` of a polynomial is zero for certain w, if ``S = sin w`` is proven.
 
+    Factors with acos, atan and atan2 are proven likewise; the result is None if there is no factor of this form.
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
     between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """

@@ -121,7 +121,10 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
             pairs = zip(quotients, ring.relations.basis, strict=True)
             cofactors = tuple((_plain(ring, q), _plain(ring, b)) for q, b in pairs if q)
             yield Link(
-                _fraction(ring, numerator, value), "multiples of what the hypotheses put to zero", None, cofactors
+                _fraction(ring, numerator, value),
+                "multiples of expressions that are zero by hypothesis",
+                None,
+                cofactors,
             )
     yield Link(ring.expression(value), "common factors")
 

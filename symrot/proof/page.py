@@ -106,13 +106,13 @@ class Figure:
     name : str
         The name of its file, without ``.svg``.
     title : str
-        What it shows, in a few words without formulas.
+        A few words without formulas, which say what the figure shows.
     caption : str
         Sentences below the figure; formulas are LaTeX between ``$``.
     draw : callable
         Returns the drawing.
     section : str
-        The title of the section that it opens; empty for the top of the page.
+        The title of the section that begins with this figure; empty for a figure at the top of the page.
     """
 
     name: str

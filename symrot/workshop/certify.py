@@ -340,7 +340,7 @@ def lines(data: Data, compared: bool = True) -> list[str]:
             f"; the series of {s[0]} is truncated by less than {_short(s[3])} of its value" for s in function["series"]
         )
         count = sum(function["operations"].values())
-        rows.append(("C text", f"{name} and its batch are the formulas, {count} operations{series}"))
+        rows.append(("C text", f"{name} and its batch function compute the formulas in {count} operations{series}"))
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"

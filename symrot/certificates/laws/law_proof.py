@@ -331,7 +331,10 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of the base angle for a monomial; raise BaseAngleTooLarge if it must be smaller."""
+        """Return the c for which ``c*unit`` is a base angle, such as 1/2 for x/2.
+
+        Raise BaseAngleTooLarge if ``coefficient*unit`` is no integer multiple of this base angle.
+        """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(

@@ -144,9 +144,9 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    In this order few values are needed later at any time. ``index_of`` returns the C index of a component in its array.
-    With ``late``, results are computed in the order of :func:`_computed_in_turn`, and stored after all of them are
-    computed.
+    This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C
+    index of a component in its array. With ``late``, results are computed in the order of :func:`_computed_in_turn`,
+    and stored after all of them are computed.
     """
     results = dict(program.outputs)
     lines: list[str] = []

@@ -148,6 +148,6 @@ def _reason(link: Link) -> str:
         return f"with ${formula(link.rule[0])} = {formula(link.rule[1])}$:"
     if link.cofactors:
         terms = _terms(link)
-        return f"{link.reason} are taken away" + (f", {', '.join(f'${term}$' for term in terms)}:" if _short(terms) else
-                                                  ", each of which is zero:")  # fmt: skip
+        listed = f", {', '.join(f'${term}$' for term in terms)}" if _short(terms) else ""
+        return f"{link.reason} are subtracted{listed}:"
     return f"{link.reason}:"
