@@ -100,7 +100,7 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
 
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
-    """Return the program with the fewest operations among equal formulas; changes of sign only decide between equals.
+    """Return the program with the fewest operations among equal formulas; changes of sign count only in a tie.
 
     Parameters
     ----------
