@@ -35,7 +35,7 @@ from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
 
-TARGETS = ("c", "numpy", "js")
+TARGETS = ("c", "numpy", "js", "jax")
 PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
@@ -196,6 +196,8 @@ def _emit(options: Namespace) -> int:
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
                          "(see `symrot emit --help`)")  # fmt: skip
+    if options.cmake and (options.directory is None or options.target not in (None, "c") or not options.kernel):
+        raise InputError("--cmake: expected a KERNEL or SCENE in C and -o DIR (see `symrot emit --help`)")
     for option in ("jacobian", "step", "order"):
         if getattr(options, option) is not None and not options.kernel:
             raise InputError(f"--{option}: expected a KERNEL or SCENE as well (see `symrot emit --help`)")
@@ -219,6 +221,8 @@ def _emit(options: Namespace) -> int:
             return OK
         if options.target in (None, "c"):
             texts |= kernels.certificate_files(kernel, options.directory, bounds)
+        if options.cmake:
+            texts |= kernels.build_files()
         written = kernels.write_files(options.directory, texts)
     progress("")
     say(str(path) for path in written)
@@ -409,6 +413,8 @@ def _emit_arguments(parser: ArgumentParser) -> None:
                         "such as omega,q, or by constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
     parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument("--cmake", action="store_true", help="with -o: also write the files by which CMake and "
+                        "pkg-config take kernels of this folder by name")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder to write to, or to compare with --check (default: standard output for a kernel, "
                         "otherwise ./generated)")  # fmt: skip
@@ -500,7 +506,7 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
     **cli_exercises.COMMANDS,
-    "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
+    "emit": ("print a kernel of the library or of a scene as C, NumPy, JavaScript or JAX", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),

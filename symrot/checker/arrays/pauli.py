@@ -1,4 +1,4 @@
-"""Pauli's matrices, as sigma_x, sigma_y, sigma_z or sigma_1, sigma_2, sigma_3 beside the imaginary unit.
+"""Pauli's matrices: sigma_x, sigma_y, sigma_z or sigma_1, sigma_2, sigma_3 in a formula with the imaginary unit.
 
 A complex number a + i b is the real 2 x 2 matrix [[a, -b], [b, a]]. So i and Pauli's matrices become real 4 x 4
 matrices, with which the engine computes exactly.
@@ -27,10 +27,10 @@ PARTS = ("name", "number", "sum", "product", "neg", "power", "inv")
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices, with scalars as multiples of the unit matrix, and the definitions.
+    """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
-    An equation without two of these matrices, or without i, is returned unchanged with no definitions: sigma_x is then
-    a number, such as a stress.
+    An equation without two of these matrices, or without i, is returned unchanged with no definitions: sigma_x is
+    then a number, such as a stress.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
 
 
 def _real(matrix: Complex) -> Node:
-    """Return the tree of the real matrix of a complex one."""
+    """Return the tree of the real matrix that represents a complex matrix."""
     rows = []
     for row in matrix:
         parts = [(complex(entry).real, complex(entry).imag) for entry in row]
@@ -68,7 +68,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
-    """Return the first name that is in an exponent and also outside of exponents; an empty text without one."""
+    """Return the first matrix name that occurs both inside and outside of exponents; an empty text without one."""
     exponents = [
         node.args[-1] for node in nodes if node.kind == "power" or (node.kind == "call" and node.value == "exp")
     ]
@@ -78,13 +78,13 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 
 
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a side as a matrix; a scalar side s becomes s times the unit matrix."""
+    """Return a side as a matrix: a scalar side s becomes s times the unit matrix."""
     side = _with_units(side, shapes)
     return side if shape_of(side, shapes) is not None else _times_unit(side)
 
 
 def _with_units(tree: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a tree in which scalar terms of sums of matrices are multiples of the unit matrix."""
+    """Return a tree in which a scalar term s that is added to a matrix becomes s times the unit matrix."""
     args = [_with_units(part, shapes) for part in tree.args]
     if tree.kind == "sum" and any(shape_of(term, shapes) is not None for term in args):
         args = [term if shape_of(term, shapes) is not None else _times_unit(term) for term in args]
