@@ -243,7 +243,7 @@ def _derive(options: Namespace) -> int:
         raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
     if options.format != "markdown" and options.all:
         if options.directory is None:
-            raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
+            raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")
         say(str(path) for path in derivation_pages.write_pages(options.directory, options.format))
         return OK
     directory = options.directory or Path("derivations")
@@ -381,14 +381,14 @@ def _run_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE",
-                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for a page that moves")  # fmt: skip
+                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for an animated page")  # fmt: skip
     json_option(parser)
 
 
 def _show_arguments(parser: ArgumentParser) -> None:
     cli_scenes.scene_options(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
-                        help="FILE.html, or a film: FILE.gif, FILE.mp4 (default: SCENE.html)")  # fmt: skip
+                        help="file to write: FILE.html, or a film, FILE.gif or .mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 
 
@@ -398,7 +398,7 @@ def _explain_arguments(parser: ArgumentParser) -> None:
 
 
 def _emit_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or a scene file")
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument(
@@ -454,16 +454,17 @@ def _check_arguments(parser: ArgumentParser) -> None:
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
     )
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
-                        help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+                        help="check the claim (given as text) only where 'x > 0', 'x != 0' or 'a == b' holds; may be "
+                        "repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
-                        help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+                        help="unit of a symbol in a claim given as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--where", metavar="'NAME = WORDS'", action="append", default=[],
-                        help="what a name means, with a claim as text: 'I = moment of inertia about the centre', "
+                        help="meaning of a name in a claim given as text: 'I = moment of inertia about the centre', "
                         "'p = spin'; may be repeated")  # fmt: skip
     _context_options(parser)
     parser.add_argument("--strict", action="store_true",
-                        help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
-    parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+                        help="exit with code 1 for a claim that only defines a name by a formula")  # fmt: skip
+    parser.add_argument("--no-repair", action="store_true", help="do not suggest corrections of a false claim")
     json_option(parser)
 
 
