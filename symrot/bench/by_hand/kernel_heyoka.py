@@ -39,7 +39,9 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():
-        raise ImportError(f"expected {_LOADED}, which lists the shared library of heyoka; this system has no such file")
+        raise ImportError(
+            f"expected the file {_LOADED}, which names the shared library of heyoka; this system has no such file"
+        )
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:
             ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)
