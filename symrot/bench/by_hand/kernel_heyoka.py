@@ -28,7 +28,7 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's functions for a kernel: for one sample, and for a batch (1 or ``LANES``).
+    """Return the addresses of heyoka's functions for a kernel: one sample, and 1 or ``LANES`` samples of a batch.
 
     heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 
