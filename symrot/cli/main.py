@@ -172,7 +172,7 @@ def _write_partial(error: BaseException, propagator: Any, options: Namespace) ->
     from symrot.report import output
 
     output.save(part, options.out)
-    return f"; {options.out} contains the {len(part)} samples before"
+    return f"; {options.out} contains the {len(part)} samples before that time"
 
 
 def _explain(options: Namespace) -> int:
