@@ -62,7 +62,9 @@ def _interval(low: Fraction, high: Fraction) -> Any:
 
 def _undefined(name: str) -> Callable[..., Any]:
     def refuse(*arguments: Any) -> Any:
-        raise InputError(f"expected rates of functions whose truncation has bounds ({', '.join(_SCALAR)}), got {name}")
+        raise InputError(
+            f"expected rates of + - * / and {', '.join(_SCALAR)}, whose truncation can be bounded, got {name}"
+        )
 
     return refuse
 
