@@ -22,6 +22,7 @@ from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
+from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
@@ -257,7 +258,7 @@ def verdict_on_reading(
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
-    parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
+    parts = [(claim, _on_claim(claim, notation, repair, reading.plain)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
     if several and verdict.verdict == "conditional":
@@ -300,10 +301,12 @@ def _differs(echo: str, source: str) -> bool:
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
-def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
+def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
+    """Return the verdict on one equation; in a ``plain`` text, which is not SymPy's, = may mean a condition."""
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
