@@ -40,7 +40,7 @@ def _bound(options: Namespace) -> int:
     report: symrot.RoundingBounds | symrot.LargestBox
     if options.target is None:
         if options.variable:
-            raise InputError("--variable: expected --target X as well, since only that search resizes ranges")
+            raise InputError("--variable: expected --target X as well, since only the search for a box changes ranges")
         report = symrot.bound(options.kernel, options.box, options.precision)
     else:
         report = symrot.largest_box(

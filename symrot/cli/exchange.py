@@ -25,10 +25,10 @@ def _inertia(options: Namespace) -> int:
     of_mesh = {key: getattr(options, key) for key in ("mass", "density", "scale") if getattr(options, key) is not None}
     if Path(path).suffix.lower() in SUFFIXES:
         if name:
-            raise InputError(f"{options.file}: expected a mesh without the name of a link, got {name!r}")
+            raise InputError(f"{options.file}: expected only the path, since a mesh has no links, got {name!r}")
         return _print(mesh(path, **of_mesh, flip=options.flip), options)
     if of_mesh or options.flip:
-        raise InputError("inertia: expected --mass, --density, --scale and --flip with a mesh only, got a robot file")
+        raise InputError("inertia: --mass, --density, --scale and --flip are options for a mesh, got a robot file")
     if not name and not options.toml:
         every = robot.links(path)
         if len(every) > 1:
@@ -41,7 +41,10 @@ def _inertia(options: Namespace) -> int:
 
 
 def _path_and_link(text: str) -> tuple[str, str]:
-    """Return the path and the name in ``FILE:LINK``; a file whose own name has a colon comes first."""
+    """Return the path and the name of the link in the text ``FILE:LINK``; the name may be missing.
+
+    If there is a file whose name is the whole text, with its colon, the text is the path of this file.
+    """
     path, colon, name = text.rpartition(":")
     return (path, name) if colon and path and not Path(text).is_file() else (text, "")
 

@@ -135,7 +135,7 @@ def _show(options: Namespace) -> int:
 
 
 def _trajectory(propagator: Any, options: Namespace) -> Any:
-    """Propagate a motion and return its trajectory, or None after Ctrl-C.
+    """Compute the motion that a command asks for and return its trajectory, or None after Ctrl-C.
 
     If the propagation ends early, the samples so far are written to the file of ``--out``.
     """
@@ -165,7 +165,7 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to the file of ``--out``; return the end of a sentence that says so."""
+    """Write the samples before an error to the file of ``--out``; return text for the error message that says so."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
@@ -554,7 +554,7 @@ def _check_unknown(command: str, unknown: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect a stream whose reader has ended to the null device, so that Python closes the stream without error."""
+    """Redirect a stream to the null device after its reader has ended, so that Python closes it without an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

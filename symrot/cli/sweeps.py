@@ -97,12 +97,12 @@ def _sweep(options: Namespace) -> int:
     except KeyboardInterrupt:
         progress("")
         sys.stderr.write(
-            f"symrot: interrupted; complete chunks are in {options.out}, run the same command again to go on\n"
+            f"symrot: interrupted; complete chunks are in {options.out}; run the same command again to go on\n"
         )
         return INTERRUPTED
     except OSError as reason:  # such as a full disk
         raise InputError(
-            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to "
+            f"{options.out}: {reason.strerror or reason}; the complete chunks are saved, run the same command again to "
             "go on"
         ) from None
     progress("")

@@ -72,7 +72,10 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities that follow from a special direction of a torque."""
+    """Yield candidates that the direction of a torque suggests, as (name, unit, value, formula to test).
+
+    Under gravity, for example, the vertical angular momentum may be conserved.
+    """
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:

@@ -110,7 +110,7 @@ def _prefix(number: int, names: list[str], known: set[str]) -> str:
 
 
 def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    """Return the exact values of the free constants of body and torques, by name."""
+    """Return the exact values, by name, of those constants of body and torques that the structure leaves free."""
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}
     if isinstance(pattern, PrincipalInertia):

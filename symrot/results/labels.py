@@ -72,14 +72,14 @@ def about(trajectory: Any) -> About:
 
 
 def event_array(number: int, quantity: str) -> str:
-    """Return the name of an array in a file: a quantity at the times of one event, the first of which has number 1."""
+    """Return the name of the array in a file that holds a quantity at the times of one event; events count from 1."""
     return f"event_{number}_{quantity}"
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
-    """Return the time and the named quantities of a trajectory, by default its output, each with its labels.
+    """Return the time and the named quantities of a trajectory with labels; default: the scene's output quantities.
 
-    Euler angles are followed by the quantity :data:`LOCK`. It is true for samples in gimbal lock, where only the sum or
+    After Euler angles comes the quantity :data:`LOCK`, which is true for samples at gimbal lock: there only the sum or
     the difference of two angles is defined.
 
     Raises

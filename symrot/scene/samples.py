@@ -66,7 +66,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a value is a float of usual size, so that no further check is needed."""
+    """Return whether a value is a finite float of ordinary size (or 0.0), which needs no further check."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 

@@ -1,4 +1,4 @@
-"""The tables of a scene other than its body and its torques: initial state, span, output and accuracy, with readers.
+"""The small tables of a scene file (initial state, span, output and accuracy) and the functions that read them.
 
 All numbers are exact. This module does not use SymPy.
 """

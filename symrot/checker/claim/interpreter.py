@@ -1,4 +1,4 @@
-"""The interpreter of claims: it turns syntax trees into SymPy, by a table with one function for each kind of node."""
+"""The interpreter of claims turns syntax trees into SymPy formulas, by a table with one function per kind of node."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ INSTEAD = {"I": "I_1", "E": "E_k"}
 
 @dataclass
 class Interpreter(Scope):
-    """Interpreter of one claim: it knows the names of the claim, and turns syntax trees into SymPy."""
+    """The interpreter of one claim: it knows the claim's names and turns syntax trees into SymPy formulas."""
 
     def read(self, node: Node, source: str = "", where: str = "") -> Any:
         """Return the value of a tree: Expr or ImmutableMatrix.
@@ -45,7 +45,7 @@ class Interpreter(Scope):
         Raises
         ------
         InputError
-            For a piece without a value, with its position in ``source``.
+            If a part of the formula has no value; the message gives its position in ``source``.
         """
         self.source, self.where = source or self.source, where or self.where
         value = self.evaluate(node)
@@ -169,7 +169,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
 
 
 def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
-    """Return exp(exponent*log(base)), the power of a positive base, for an exponent that is not a number."""
+    """Return ``exp(exponent*log(base))``: the power of a positive base with an exponent that is not a number."""
     interpreter.shape(base, node.args[0])
     interpreter.within_nesting(exponent, node.args[1])
     if base.is_nonpositive:

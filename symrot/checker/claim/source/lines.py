@@ -22,9 +22,10 @@ def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return, for each line of a reading (one interpretation of a text), a list of claims: one per equals sign.
+    """Return the claims of one reading (interpretation) of a text: a list per line, with one claim per equals sign.
 
-    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context.
+    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context:
+    what the user says in words about names and the body.
     """
     define: list[tuple[str, Node]] = []
     lines = []
@@ -64,9 +65,9 @@ def claims_of_reading(
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the names of complex numbers, each with the formula that a line such as ``z = x + i*y`` gives it.
+    """Return the formula of each complex number: the one that a line such as ``z = x + i*y`` gives it.
 
-    A complex number without such a line has a name for its real part and one for its imaginary part.
+    A complex number without such a line becomes ``Re_z + i*Im_z``, with new names for its parts.
     """
     unit = imaginary_unit(formulas)
     if unit is None:
