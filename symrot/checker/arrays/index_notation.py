@@ -20,6 +20,9 @@ INDEXED = re.compile(r"([A-Za-z]+)_([i-np-s]{1,4})")
 SYMBOLS = {"delta": 2, "epsilon": 3}
 """Symbol -> the number of its indices."""
 
+OF_PAULI = frozenset({"sigma", "i", "I"})
+"""The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""
+
 MOST_ENTRIES, WIDTH = 81, 9
 """The most terms of a sum, and of entries of an equation; the number of entries in a row of its matrix."""
 
@@ -45,7 +48,9 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
         raise InputError(f"expected at most 4 free indices, got {len(indices)}: {', '.join(indices)}")
     values = [dict(zip(indices, choice, strict=True)) for choice in combinations("123", repeat=len(indices))]
     lefts, rights = ([_component(side, value) for value in values] for side in (left, right))
-    first, second = (entries[0] if not indices else _matrix(entries) for entries in (lefts, rights))
+    is_pauli = "sigma" in {*_quantities(left), *_quantities(right)}  # each entry is then a matrix itself
+    width = 3 if is_pauli else WIDTH
+    first, second = (entries[0] if not indices else _matrix(entries, width) for entries in (lefts, rights))
     take = "takes" if len(indices) == 1 else "take"
     free_words = f"; {', '.join(indices)} {take} every value" if indices else ""
     return (sign, first, second), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
@@ -75,6 +80,8 @@ def _is_condition(left: Node, right: Node) -> bool:
     if any(side.kind == "name" and not _symbol(side) for side in (left, right)):
         return True
     own = [Counter(_quantities(side)) for side in (left, right)]
+    if "sigma" in (names := {*own[0], *own[1]}) and names <= OF_PAULI:
+        return False
     for side, other in ((0, 1), (1, 0)):
         if (left, right)[side] == number(0):
             return not any(count > 1 for count in own[other].values())
@@ -172,8 +179,8 @@ def _epsilon(digits: str) -> int:
     return (j - i) * (k - j) * (k - i) // 2
 
 
-def _matrix(entries: Sequence[Node]) -> Node:
-    rows = [entries[n : n + WIDTH] for n in range(0, len(entries), WIDTH)]
+def _matrix(entries: Sequence[Node], width: int) -> Node:
+    rows = [entries[n : n + width] for n in range(0, len(entries), width)]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
 
 
