@@ -264,8 +264,10 @@ class _Text:
 
     @property
     def differentials(self) -> set[str]:
-        """The names that start with d and occur as in ``dy/dx`` or ``d/dx (..)``: dy and dx."""
-        words = set()
+        """The names that start with d and occur as in ``dy/dx``, ``d/dx (..)``, ``∂y`` or ``∫ y dx``: dy and dx."""
+        words = {token.text for token in self.tokens if self.source[token.start : token.start + 1] == "∂"}
+        if any(token.text == "∫" for token in self.tokens):
+            words |= {token.text for token in self.tokens if re.fullmatch("d[A-Za-z]", token.text)}
         for n, slash in enumerate(self.tokens):
             above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
             is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")

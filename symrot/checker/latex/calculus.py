@@ -2,6 +2,7 @@
 
 from itertools import takewhile
 
+from symrot.checker.claim.densities import over_mass
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
@@ -188,8 +189,11 @@ class CalculusPart(NamesPart):
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
         self.integrals -= 1
-        if not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        if self.differential() and self.peek(1).text in ("V", "A", "s") and (mass := over_mass(integrand)) is not None:
+            self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
+            integrand = mass
+        elif not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, dm, or a density and dV for an integral over a body")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 

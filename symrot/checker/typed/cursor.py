@@ -13,13 +13,18 @@ from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
-__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
-           "is_usual_vector"]  # fmt: skip
+__all__ = [
+    "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
+    "is_usual_vector",
+]  # fmt: skip
 
 DEEPEST_NESTING = 60
 LONGEST_NUMBER = 200
 TIME = Node("name", "t")
 ADDING = ("+", "-")
+MASS = "dm"
+"""The element of mass of a body."""
+
 FACTOR_MARKS = ("(", "[", "√")
 """Marks with which a factor without a sign before it may start."""
 
@@ -89,6 +94,7 @@ class Cursor(ABC):
         self.vocabulary, self.flips, self.as_sympy = vocabulary or Vocabulary(), flips, as_sympy
         self.depth = self.index = self.bars = 0
         self.plain = self.in_integral = False
+        self.element = MASS
         self.doubts: list[Doubt] = []
         self.notes: list[str] = []
         self.timed: set[str] = set()
@@ -201,8 +207,8 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
 
     def is_element(self) -> bool:
-        """Return whether the element of mass dm is at the cursor."""
-        return self.token().text == "dm"
+        """Return whether the element of the integral, such as dm or dx, is at the cursor."""
+        return self.token().text == self.element
 
     def end_of_run(self) -> int:
         """Return the position in the text at which the factor at the cursor ends."""

@@ -75,7 +75,7 @@ _FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
 
 _HINTS = {
     "\\": "LaTeX goes into latex = ..",     "∬": "write integrate(f, (x, from, to))",
-    "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
+    "∭": "write integrate(f, (x, from, to))",
     "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
@@ -177,6 +177,10 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "fraction", "/".join(_written(part) for part in fraction.groups()), fraction.end()
     elif character in LETTERS:
         yield from _letter(text, at, LETTERS[character])
+    elif character == "∂":
+        yield from _differential(text, at + 1)
+    elif text[:at].rstrip().endswith("∫") and (character == "_" or character in _LOWERED):
+        yield from _lower_limit(text, at)
     elif name := _NAME.match(text, at):
         yield from _name(text, at, name)
     elif mark := _MARK.match(text, at):
@@ -195,6 +199,24 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "power", "".join(_RAISED[c] for c in text[at:stop]), stop
     elif character in _FRACTIONS:
         yield "fraction", str(Fraction(unicodedata.numeric(character)).limit_denominator(10)), at + 1
+
+
+def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the tokens of the name after ``∂``, with d in front: ``∂T`` is read as ``dT``, and ``∂`` alone as ``d``."""
+    name = _NAME.match(text, at)
+    pieces = _pieces(text, at) if text[at : at + 1] in LETTERS else _name(text, at, name) if name else ()
+    first, *rest = *pieces, ("name", "", at)
+    yield first[0], f"d{first[1]}", first[2]
+    yield from rest[:-1]
+
+
+def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the mark ``_`` of the lower limit of an integral; lowered digits ``∫₀`` are the limit itself."""
+    lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, at)
+    yield "mark", "_", at if lowered else at + 1
+    if lowered is not None:
+        digits = _written(lowered[0])
+        yield "number" if digits.isdigit() else "name", digits, lowered.end()
 
 
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:

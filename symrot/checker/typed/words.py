@@ -27,7 +27,7 @@ SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
     "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
     "acsch", "tg", "ctg", "cosec",
-    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "tr", "inverse", "transpose",
+    "exp", "log", "ln", "sqrt", "abs", "arg", "det", "trace", "tr", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
 
