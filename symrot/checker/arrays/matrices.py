@@ -82,6 +82,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
         name = str(node.args[0].value) if node.kind == "call" and node.value in ("det", "trace") else ""
         if name[:1].isupper() and name in vectors and not is_tensor(name):
             matrices[name] = False
+    multiplied = [
+        part for node in nodes if node.kind == "call" and node.value in ("dot", "cross") for part in node.args
+    ]
+    vectors = {name for name in vectors if Node("name", name) not in multiplied}
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
             name = _name_of_array(first)

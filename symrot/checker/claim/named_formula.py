@@ -153,8 +153,8 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return None
     if apart:
         for side, formula in ((left, right), (right, left)):
-            if (solved := solution(side)) is not None:
-                (name, is_rate), solve = solved
+            if (inverted := solution(side)) is not None:
+                (name, is_rate), solve = inverted
                 return NamedFormula(name, side, formula, is_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:

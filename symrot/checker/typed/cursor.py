@@ -15,7 +15,7 @@ from symrot.errors import InputError, complaint
 
 __all__ = [
     "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
-    "is_usual_vector",
+    "is_mass_before_vector", "is_usual_vector",
 ]  # fmt: skip
 
 DEEPEST_NESTING = 60
@@ -232,6 +232,7 @@ class Cursor(ABC):
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
+        after = self.token(2) if is_mass_before_vector(after, self.token(2)) else after
         if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
@@ -240,6 +241,11 @@ class Cursor(ABC):
 def is_usual_vector(name: str) -> bool:
     """Return whether a name usually is that of a vector."""
     return re.split("[_0-9]", name)[0] in USUAL_VECTORS
+
+
+def is_mass_before_vector(token: Token, after: Token) -> bool:
+    """Return whether a token is the mass m in ``r x m v``."""
+    return token.text in ("m", "M") and after.kind == "name" and is_usual_vector(after.text)
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:

@@ -93,6 +93,9 @@ _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
 """Primes between a letter and its subscript."""
 
+_AXIS_PAIR = re.compile("[IJP]_[xyz]'[xyz]'")
+"""A product of inertia about axes with a prime."""
+
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
 _SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
 _DIGITS = re.compile(r"[0-9]+", re.ASCII)
@@ -204,10 +207,13 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
     """Yield the tokens of the name after ``∂``, with d in front: ``∂T`` is read as ``dT``, and ``∂`` alone as ``d``."""
     name = _NAME.match(text, at)
-    pieces = _pieces(text, at) if text[at : at + 1] in LETTERS else _name(text, at, name) if name else ()
-    first, *rest = *pieces, ("name", "", at)
-    yield first[0], f"d{first[1]}", first[2]
-    yield from rest[:-1]
+    if text[at : at + 1] in LETTERS:
+        pieces = [*_pieces(text, at)]
+    else:
+        pieces = [*_name(text, at, name)] if name else [("name", "", at)]
+    kind, word, stop = pieces[0]
+    yield kind, f"d{word}", stop
+    yield from pieces[1:]
 
 
 def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
@@ -232,6 +238,9 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
         return
     if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
         word, stop = word + LETTERS[text[stop]], stop + 1
+    if _AXIS_PAIR.fullmatch(f"{word}{text[stop : stop + 3]}"):  # I_x'y' is one name, as in LaTeX
+        yield "name", f"{word}_prime{text[stop + 1]}_prime", stop + 3
+        return
     primes = _PRIMED.match(text, stop)
     stop = primes.end() if primes else stop
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, stop)
