@@ -3,7 +3,7 @@
 A certificate is a JSON file of statements about an emitted C kernel, with proofs. A check from the files alone
 (:mod:`symrot.certificates.exact_check`) comes first. The audit then checks that
 
-- the header holds nothing but prototypes, the C text performs the certified operations, and so does JavaScript;
+- the header holds nothing but prototypes, the C text performs the certified operations, and so do JavaScript and JAX;
 - symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
   name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
   :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
@@ -21,6 +21,7 @@ from symrot.certificates.certificate import Data, certificate_json, intended_tex
 from symrot.certificates.readback.header import check_header
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.javascript import compare_javascript
+from symrot.certificates.readback.jax_text import compare_jax
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
@@ -138,7 +139,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
-    findings = _check_javascript(path, data, source)
+    findings = _check_others(path, data, source)
     if path.read_text(encoding="utf-8") != certificate_json(data):
         raise CertificateError(
             f"{path}: expected a certificate as symrot prints it, got another layout; emit the kernel again"
@@ -156,15 +157,21 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     ]
 
 
-def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
-    """Check that the JavaScript of a kernel performs the operations of its C text.
+_READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
-    Return a list with one sentence, or an empty list if there is no JavaScript file.
+
+def _check_others(path: Path, data: Data, source: str) -> list[str]:
+    """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text.
+
+    Return a list with one sentence for each of the two files that is there.
     """
-    files = [file for file in data["files"] if file.endswith(".js") and (path.parent / file).is_file()]
-    for file in files:
-        compare_javascript((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
-    return [f"{file} performs the operations of the C text" for file in files]
+    findings = []
+    for ending, compare in _READERS.items():
+        for file in data["files"]:
+            if file.endswith(ending) and (path.parent / file).is_file():
+                compare((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
+                findings.append(f"{file} performs the operations of the C text")
+    return findings
 
 
 def _compared(data: Data) -> list[str]:

@@ -1,7 +1,7 @@
-"""The verdict on a text as people type it, on its usual interpretation (reading).
+"""The verdict on a text as people type it, by its usual reading (interpretation).
 
-A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided link by link, and several
-lines are decided one by one; a line that gives a name to a formula defines the name for the lines after it.
+A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided equation by equation, and
+several lines one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
 import re
@@ -95,7 +95,7 @@ def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+    """Return the verdict on the usual reading (interpretation) of a text, with notes on readings whose verdict differs.
 
     ``notation`` returns the notation in which the formulas of a reading are written.
 
@@ -144,12 +144,12 @@ def verdict_on_readings(
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
-    """Return whether the verdict on a reading is that it may be a definition."""
+    """Return whether the verdict on a reading is "definition": nothing known is like its formula."""
     return reading[1].verdict == "definition"
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return the verdict on a text read as letters, or "definition" if it has both letters and numbers with units.
+    """Return the verdict, or "definition" for a text that has both letters and numbers with units.
 
     Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
     """
@@ -173,7 +173,7 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units: on its reading that is true, or whose units fit.
+    """Return the verdict on a text whose numbers have units: on the reading that is true, or whose units fit.
 
     Raises
     ------
@@ -227,12 +227,12 @@ def _on_units(
 
 
 def names_of(reading: Reading) -> set[str]:
-    """Return the names in a reading, with ``d`` in front for a rate."""
+    """Return the names in a reading; a rate has a ``d`` in front of its name."""
     return {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
-    """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
+    """Return the sentence that reports the verdict on a reading other than the usual one."""
     places = reading.flipped or usual.flipped
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)
@@ -253,9 +253,9 @@ def verdict_on_reading(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines.
+    """Return the verdict on one reading of a text: on its only equation, or on all equations of its chains and lines.
 
-    ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
+    ``notation`` is the notation in which formulas are written, and ``stated`` the context that the user states.
     """
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
@@ -283,7 +283,7 @@ def _on_inequality(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
     stated: Context,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on a reading that is one inequality."""
+    """Return the verdict on a reading that consists of one inequality."""
     (chain,) = reading.lines
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
@@ -299,7 +299,7 @@ def _on_inequality(
 
 
 def _differs(echo: str, source: str) -> bool:
-    """Return whether two texts differ in more than blanks."""
+    """Return whether the claim as it was read differs from the typed text in more than blanks."""
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
@@ -356,7 +356,7 @@ def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return a note on capital letters in a true claim that could be matrices: they commute only as numbers."""
+    """Return a note on a true claim that exchanges capital letters: it may be false if these are matrices."""
     if verdict.verdict != "true" or claim.relation is None:
         return ()
     known = {*dict(claim.define), *claim.symbols}
@@ -374,7 +374,7 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
-    """Return a repair in the notation of the claim, with the pieces that differ from the claim."""
+    """Return a repair in the notation of the claim, with the positions at which it differs from the claim."""
     text = notation.rewritten(repair.text)
     if claim.relation is None:
         return replace(repair, text=text)
@@ -383,9 +383,10 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations.
+    """Return the verdict "conditional" for a claim that is false for general matrices but true for rotation matrices.
 
-    Each matrix that suffices by being a rotation is an alternative; if no single one does, all of them have to be.
+    If one of several matrices suffices by being a rotation, each such matrix is an alternative condition; if none
+    does, all of them have to be rotations. Any other claim has its verdict unchanged.
     """
     names = matrices_of_entries(claim.define)
     groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
@@ -404,7 +405,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: other names share a pair's index."""
+    """Return whether a claim is in index notation: as in ``I_ik = m*a_i*a_k``, indices of a pair occur alone too."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -414,7 +415,7 @@ def _has_indices(claim: Claim) -> bool:
 def _on_parts(
     lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
 ) -> Verdict:
-    """Return the verdict on a chain or on several lines: the worst verdict on a part, and a note on each part.
+    """Return the verdict on a chain or several lines: the worst verdict on any of their equations, and a note on each.
 
     ``units`` are the names that stand for units.
     """
@@ -456,9 +457,10 @@ def _on_parts(
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several conditional equations, with the conditions of all equations.
+    """Return the verdict on several conditional equations, with the conditions of all of them.
 
-    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own condition.
+    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own
+    condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
@@ -470,10 +472,10 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the links of a chain ``name = a = b``.
+    """Return the verdicts on the equations of a chain ``name = a = b``.
 
-    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
-    L^2/(2*I) of one body are equal because of what L means. Such a link is decided as ``name = b``.
+    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2
+    and L^2/(2*I) of one body are equal because of what L means. Then ``name = b`` is decided in place of ``a = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

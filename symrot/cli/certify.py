@@ -119,9 +119,11 @@ def _bound_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input, such as theta=-1.4:1.4 (default: the kernel's own range), or of a "
                         "physical constant of a scene, such as A=1:2; may be repeated")  # fmt: skip
-    parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
+    parser.add_argument(
+        "--target", type=float, metavar="X", help="find the largest ranges of inputs for which no error is above X"
+    )
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
-                        help="with --target: resize the range of this input only; may be repeated")  # fmt: skip
+                        help="with --target: change the range of this input only; may be repeated")  # fmt: skip
     parser.add_argument(
         "--precision", choices=("double", "float"), default="double", help="type of the numbers (default: double)"
     )
@@ -149,10 +151,12 @@ def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json",
                         help="a certificate, in one folder with the files of its kernel")  # fmt: skip
     parser.add_argument(
-        "--object", type=Path, metavar="FILE.o", help="compare the object file that your compiler made from the C file"
+        "--object", type=Path, metavar="FILE.o", help="check the object file that your compiler made from the C file"
     )
     parser.add_argument(
-        "--flags", metavar="'CC FLAGS'", help="say what still holds under your flags, such as 'gcc -O3 -mfma'"
+        "--flags",
+        metavar="'CC FLAGS'",
+        help="your compiler flags, such as 'gcc -O3 -mfma': print what still holds with them",
     )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")
@@ -163,7 +167,7 @@ COMMANDS: dict[str, Command] = {
     "prove": ("print the kinematics as theorems, and have Coq check them", _prove, _prove_arguments),
     "certify": ("certify a kernel: laws, C text, rounding errors, object code", _certify, _certify_arguments),
     "audit": ("check that a certificate holds for the files in its folder", _audit, _audit_arguments),
-    "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
+    "bound": ("bound the rounding errors of a kernel for inputs in given ranges", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
 }
 """As in :data:`symrot.cli.main.COMMANDS`."""

@@ -35,7 +35,7 @@ from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
 
-TARGETS = ("c", "numpy", "js")
+TARGETS = ("c", "numpy", "js", "jax")
 PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
@@ -196,6 +196,8 @@ def _emit(options: Namespace) -> int:
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
                          "(see `symrot emit --help`)")  # fmt: skip
+    if options.cmake and (options.directory is None or options.target not in (None, "c") or not options.kernel):
+        raise InputError("--cmake: expected a KERNEL or SCENE in C and -o DIR (see `symrot emit --help`)")
     for option in ("jacobian", "step", "order"):
         if getattr(options, option) is not None and not options.kernel:
             raise InputError(f"--{option}: expected a KERNEL or SCENE as well (see `symrot emit --help`)")
@@ -219,6 +221,8 @@ def _emit(options: Namespace) -> int:
             return OK
         if options.target in (None, "c"):
             texts |= kernels.certificate_files(kernel, options.directory, bounds)
+        if options.cmake:
+            texts |= kernels.build_files()
         written = kernels.write_files(options.directory, texts)
     progress("")
     say(str(path) for path in written)
@@ -239,7 +243,7 @@ def _derive(options: Namespace) -> int:
         raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
     if options.format != "markdown" and options.all:
         if options.directory is None:
-            raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
+            raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")
         say(str(path) for path in derivation_pages.write_pages(options.directory, options.format))
         return OK
     directory = options.directory or Path("derivations")
@@ -377,14 +381,14 @@ def _run_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE",
-                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for a page that moves")  # fmt: skip
+                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for an animated page")  # fmt: skip
     json_option(parser)
 
 
 def _show_arguments(parser: ArgumentParser) -> None:
     cli_scenes.scene_options(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
-                        help="FILE.html, or a film: FILE.gif, FILE.mp4 (default: SCENE.html)")  # fmt: skip
+                        help="file to write: FILE.html, or a film, FILE.gif or .mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 
 
@@ -394,7 +398,7 @@ def _explain_arguments(parser: ArgumentParser) -> None:
 
 
 def _emit_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or a scene file")
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument(
@@ -409,6 +413,8 @@ def _emit_arguments(parser: ArgumentParser) -> None:
                         "such as omega,q, or by constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
     parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument("--cmake", action="store_true", help="with -o: also write the files by which CMake and "
+                        "pkg-config take kernels of this folder by name")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder to write to, or to compare with --check (default: standard output for a kernel, "
                         "otherwise ./generated)")  # fmt: skip
@@ -448,16 +454,17 @@ def _check_arguments(parser: ArgumentParser) -> None:
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
     )
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
-                        help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+                        help="check the claim (given as text) only where 'x > 0', 'x != 0' or 'a == b' holds; may be "
+                        "repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
-                        help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+                        help="unit of a symbol in a claim given as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--where", metavar="'NAME = WORDS'", action="append", default=[],
-                        help="what a name means, with a claim as text: 'I = moment of inertia about the centre', "
+                        help="meaning of a name in a claim given as text: 'I = moment of inertia about the centre', "
                         "'p = spin'; may be repeated")  # fmt: skip
     _context_options(parser)
     parser.add_argument("--strict", action="store_true",
-                        help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
-    parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+                        help="exit with code 1 for a claim that only defines a name by a formula")  # fmt: skip
+    parser.add_argument("--no-repair", action="store_true", help="do not suggest corrections of a false claim")
     json_option(parser)
 
 
@@ -499,7 +506,7 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
     **cli_exercises.COMMANDS,
-    "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
+    "emit": ("print a kernel of the library or of a scene as C, NumPy, JavaScript or JAX", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),

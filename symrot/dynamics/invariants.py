@@ -100,9 +100,9 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
     if name == "energy":
         return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
     if name == "Jacobi integral":
-        return "in axes that rotate with the orbit the tide is at rest"
+        return "the gravity gradient is constant in axes that rotate with the orbit"
     if name == "angular momentum":
-        return f"{acting} changes only its direction in the body"
+        return f"{acting} changes only the direction of the angular momentum in the body"
     return f"{acting} has no moment about that axis of space"
 
 

@@ -228,8 +228,8 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
         if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
             raise InputError(
-                f"torque: expected abs to be written where a formula has a kink, got {source!r}, which contains "
-                f"abs({size.args[0]}) implicitly"
+                f"torque: expected a formula that writes abs where it has a kink, got {source!r}; write it with "
+                f"abs({size.args[0]})"
             )
     return result
 

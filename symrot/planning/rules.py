@@ -73,7 +73,7 @@ class RuleOutcome(NamedTuple):
 
 
 def pattern(value: Fraction, unit: bool) -> Pattern:
-    """Return whether a number is zero, free or, if ``unit`` is true, one or minus one."""
+    """Return the pattern of a number: zero, one or minus one (only if ``unit`` is true), otherwise free."""
     top, bottom = value.as_integer_ratio()
     if not top:
         return ZERO

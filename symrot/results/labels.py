@@ -66,7 +66,7 @@ class About(NamedTuple):
 
 
 def about(trajectory: Any) -> About:
-    """Return the origin of a trajectory."""
+    """Return the scene, the method and the tolerance with which a trajectory was computed."""
     scene = trajectory.scene
     return About(scene.name, scene.title, scene.source, trajectory.method, trajectory.tolerance)
 

@@ -171,10 +171,10 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
             fail(at, "increasing times; only a switching time may occur twice, for the samples before and after the "
                      f"jump, got {after!r} s twice")  # fmt: skip
         if after == before and length < 2:
-            fail(at, f"two samples or more between switching times, got one at {after!r} s")
+            fail(at, f"two samples or more between switching times, got only one, at {after!r} s")
         length = 1 if after == before else length + 1
     if length < 2:
-        fail(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
+        fail(place, f"two samples or more between switching times, got only one, at {times[-1]!r} s")
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:

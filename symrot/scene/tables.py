@@ -185,7 +185,7 @@ def _read_output(value: Any, where: str) -> Output:
 
 
 def read_tolerance(tolerance: float) -> float:
-    """Return the tolerance of a call, after checks.
+    """Return a tolerance that a user gives in Python or by an option, after a check of its range.
 
     Raises
     ------

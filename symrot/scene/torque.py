@@ -307,4 +307,4 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
             return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
         return Torque(name, fields)
     except RecursionError:
-        raise InputError(f"{where}: expected a formula of fewer levels, got {show(entries)}") from None
+        raise InputError(f"{where}: expected a formula with fewer nested levels, got {show(entries)}") from None

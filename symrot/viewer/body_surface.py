@@ -81,8 +81,8 @@ def how_drawn(body: Body) -> str:
     if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
-        return "The body is drawn as a box with the proportions of its moments about the fixed point."
-    return "The body is drawn as the uniform box with its moments."
+        return "The body is drawn as a box whose proportions follow from its moments of inertia about the fixed point."
+    return "The body is drawn as the uniform box with the same moments of inertia."
 
 
 def _of_facets(body: Body) -> Patch:

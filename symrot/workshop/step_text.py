@@ -1,4 +1,4 @@
-"""The texts of one time step of a scene: C with test vectors, NumPy, JavaScript and the certificate of its formula."""
+"""The texts of one time step of a scene: C with test vectors, NumPy, JavaScript, JAX, and a certificate."""
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
@@ -9,6 +9,7 @@ from symrot.certificates.certificate import KernelUnderTest
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
 from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c_header, c_name, with_head
+from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_program, stepped
@@ -148,6 +149,11 @@ class StepText(KernelText):
     def js(self) -> str:
         """The JavaScript source."""
         return js_source(self._program, self._description("js"))
+
+    @cached_property
+    def jax(self) -> str:
+        """The JAX source."""
+        return jax_source(self._program, self._description("jax"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Raise CertificateError: a step has a certificate of its own kind."""

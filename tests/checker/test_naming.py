@@ -225,6 +225,9 @@ def test_a_constraint_of_quantities_is_not_called_false(claim):
         "x*y == 0",
         "sin(x)^2 + cos(y)^2 = 1",
         "Rx(a)*Ry(b) == Rx(c)*Ry(b)",
+        "x*sin(a) + y*cos(b) == x*sin(c) + y*cos(b)",
+        "x*cos(asin(k)) + k == (2*k*(sin(a)**2 + cos(a)**2) - k)*z/z",
+        "abs(x*cos(a))*abs(y) == abs(z*cos(a))*sqrt(y**2)",
     ],
 )
 def test_a_wrong_identity_in_letters_of_one_side_stays_false(claim):

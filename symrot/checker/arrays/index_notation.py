@@ -28,7 +28,7 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation in index notation, written out in components, and a note; any other equation unchanged.
+    """Return an equation in index notation written out in components, and a note; return any other equation unchanged.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def has_index_symbols(relation: Relation) -> bool:
-    """Return whether an equation has delta_ij or epsilon_ijk, which :func:`written_out` leaves in conditions only."""
+    """Return whether an equation has delta_ij or epsilon_ijk; :func:`written_out` leaves these only in conditions."""
     return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
 
 
@@ -73,7 +73,7 @@ def _indices(node: Node) -> str:
 
 
 def _is_condition(left: Node, right: Node) -> bool:
-    """Return whether an equation gives a formula for a quantity, or restricts quantities: R_ik R_jk = delta_ij.
+    """Return whether an equation is no identity: it defines a quantity or restricts some, as R_ik R_jk = delta_ij does.
 
     An identity has the same quantities on both sides, or zero on one side and a quantity twice on the other.
     """
@@ -89,7 +89,7 @@ def _is_condition(left: Node, right: Node) -> bool:
 
 
 def _quantities(side: Node) -> Iterator[str]:
-    """Yield the letters of a side, without their indices, except delta and epsilon."""
+    """Yield the names of the quantities on a side, without indices: R for R_ij. Delta and epsilon are left out."""
     for _, node in walk(side):
         if node.kind == "name" and not _symbol(node) and node.value != "pi":
             yield str(node.value).rpartition("_")[0] if _indices(node) else str(node.value)
@@ -114,7 +114,7 @@ def _flat(factors: Sequence[Node]) -> Node:
 
 
 def _counts(term: Node) -> Counter[str]:
-    """Return how often each index occurs in a term; in a square each occurs twice as often."""
+    """Return how often each index occurs in a term; an index inside a square counts twice."""
     counts: Counter[str] = Counter(_indices(term))
     for part in term.args:
         own = _counts(part)
@@ -133,7 +133,7 @@ def _free(term: Node) -> tuple[str, ...]:
 
 
 def _component(side: Node, values: Mapping[str, str]) -> Node:
-    """Return a side with values for its free indices, and with its sums written out."""
+    """Return a side with numbers for its free indices and with its sums written out: one component of the equation."""
     if side.kind == "sum":
         return sum_of([_component(part, values) for part in side.args])
     if side.kind == "neg":
@@ -158,7 +158,7 @@ def _component(side: Node, values: Mapping[str, str]) -> Node:
 
 
 def _with_values(term: Node, values: Mapping[str, str]) -> Node:
-    """Return a term with numbers in place of its indices; zero if a factor is zero."""
+    """Return a term with numbers in place of its indices; zero if one of its factors is zero."""
     if indices := _indices(term):
         digits = "".join(values[index] for index in indices)
         if _symbol(term):

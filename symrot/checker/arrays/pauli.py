@@ -32,7 +32,7 @@ CALLS = ("sin", "cos", "trace", "Matrix")
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices, with scalars as multiples of the unit matrix, and the definitions.
+    """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
     These are the matrices if the equation has two of them and i, or a product or power of them and no
     other name. Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no
@@ -105,7 +105,7 @@ def eye() -> Node:
 
 
 def _real(matrix: Complex) -> Node:
-    """Return the tree of the real matrix of a complex one."""
+    """Return the tree of the real matrix that represents a complex matrix."""
     rows = []
     for row in matrix:
         parts = [(complex(entry).real, complex(entry).imag) for entry in row]
@@ -119,7 +119,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
-    """Return the first name that is in an exponent and also outside of exponents; an empty text without one."""
+    """Return the first matrix name that occurs both inside and outside of exponents; an empty text without one."""
     exponents = [
         node.args[-1] for node in nodes if node.kind == "power" or (node.kind == "call" and node.value == "exp")
     ]
@@ -140,7 +140,7 @@ def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
 
 
 def _with_units(tree: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a tree in which scalar terms of sums of matrices are multiples of the unit matrix."""
+    """Return a tree in which a scalar term s that is added to a matrix becomes s times the unit matrix."""
     args = [_with_units(part, shapes) for part in tree.args]
     if tree.kind == "sum" and any(shape_of(term, shapes) is not None for term in args):
         args = [term if shape_of(term, shapes) is not None else _times_unit(term) for term in args]

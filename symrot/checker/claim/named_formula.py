@@ -238,8 +238,20 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 
 
 def _depends_on_own_letters(claim: Claim) -> bool:
-    """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not."""
-    left, right = (atoms_of(flatten(side)[0]) for side in (claim.equation.left, claim.equation.right))
+    """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not.
+
+    A claim whose sides become equal if one letter replaces another, as ``x*cos(a) == x*cos(b)``, has the wrong letter.
+    """
+    try:
+        sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
+        left, right = map(atoms_of, sides)
+        own = [*(left - right), *(right - left)]
+        if len(own) == 2 and all(atom.is_Symbol for atom in own) and left - right and right - left:
+            other = dict([own])
+            changed = [form.xreplace(other) for form in sides[0]]
+            return any(normal_form(a - b) != 0 for a, b in zip(changed, sides[1], strict=True))
+    except TooLarge:
+        left, right = (atoms_of(flatten(side)[0]) for side in (claim.equation.left, claim.equation.right))
     return bool(left - right) and bool(right - left)
 
 

@@ -1,4 +1,4 @@
-"""Functions, roots, fractions, derivatives and integrals in LaTeX."""
+"""Parsing functions, roots, fractions, derivatives and integrals in LaTeX."""
 
 from itertools import takewhile
 
@@ -16,7 +16,7 @@ DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
 
 class CalculusPart(NamesPart):
-    """The methods of the LaTeX reader that read functions, roots, fractions, derivatives and integrals."""
+    """The methods of the LaTeX reader that parse functions, roots, fractions, derivatives and integrals."""
 
     def trigonometric(self, function: tree.Node) -> Node:
         power = None
@@ -39,9 +39,10 @@ class CalculusPart(NamesPart):
         return node if power is None else Node("power", None, (node, power))
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Read an argument without brackets, such as ``2\theta``; return its tree and an exponent of the whole sine.
+        r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
 
-        The exponent is None unless a power after the argument is read as one of the sine: ``\sin\theta^2``.
+        The exponent is None unless a power after the argument is taken for one of the whole call, as in
+        ``\sin\theta^2``.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
@@ -59,7 +60,7 @@ class CalculusPart(NamesPart):
         return (negated(argument) if negative else argument), power
 
     def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
-        """Read and return the factors after the first one in an argument without brackets."""
+        r"""Parse and return the factors after the first one in an argument without brackets: t in ``\sin\omega t``."""
         factors = [self.factor()] if required else []
         first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
@@ -85,7 +86,7 @@ class CalculusPart(NamesPart):
         return factors
 
     def holds_skew_matrix(self) -> bool:
-        r"""Return whether the bracket at the cursor is a skew matrix, ``[a\times]`` or ``[a]_\times``."""
+        r"""Return whether the square bracket at the cursor is the skew matrix of a vector, ``[a\times]``."""
         end = next((n for n, item in enumerate(self.items[self.index :]) if item.text == "]"), 0)
         mark = self.peek(end + 1)
         crossed = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
@@ -112,7 +113,7 @@ class CalculusPart(NamesPart):
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
     def leibniz(self) -> Node | None:
-        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``, and return it; otherwise None."""
+        r"""Parse and return a time derivative with a slash, such as ``d\mathbf L/dt``; return None if there is none."""
         texts = [item.text for item in self.items[self.index : self.index + 8]]
         slash = texts.index("/") if "/" in texts else 0
         below = self.index + slash + 1
@@ -129,7 +130,7 @@ class CalculusPart(NamesPart):
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
-        r"""Read a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
+        r"""Parse a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
         order, operand = self.inside(fraction.above, self.differentiated)
         if "d" in self.names:
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
@@ -146,16 +147,16 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        """Read the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
+        r"""Parse the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
 
-        X is None if it follows the fraction.
+        X is None if it follows the fraction, as in ``\frac{d}{dt} X``.
         """
         self.next()
         order = self.order()
         return order, None if self.peek().kind == "end" else self.expression()
 
     def variables(self) -> list[Node]:
-        """Read the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
+        """Parse the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
         variables: list[Node] = []
         while self.peek().kind != "end":
             if not is_d(self.next()):
@@ -184,7 +185,7 @@ class CalculusPart(NamesPart):
         return derivative
 
     def over_body(self) -> Node:
-        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe; return its tree."""
+        r"""Parse ``\int x^2\,dm``, an integral over a body of unknown shape; return its tree."""
         self.script("_")
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
@@ -217,7 +218,7 @@ class CalculusPart(NamesPart):
         return Node("call", "integrate", (integrand, *ranges))
 
     def has_limits(self) -> bool:
-        """Return whether limits follow an integral sign; the name of a body under it is no limit."""
+        """Return whether limits follow an integral sign; the name of a body below the sign is no limit."""
         lower = self.peek()
         marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
         is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")

@@ -89,7 +89,7 @@ def identify(
     Parameters
     ----------
     formula : str, Expr or Matrix
-        Text in the language of claims, LaTeX (text with a backslash), or a SymPy value.
+        Text in SymPy syntax or as typed, LaTeX (text with a backslash), or a SymPy value.
     most : int
         How many names to return at most.
     body, frame, sequence : str

@@ -1,4 +1,4 @@
-"""The smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices, methods and primes."""
+"""Parsing the smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices and primes."""
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -78,9 +78,10 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def is_star(self) -> bool:
-        """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows.
+        """Return whether a star marks a conjugate, as in ``q v q*``: no blank is before it, and no factor follows.
 
-        In ``q* q'`` the factor that follows is the same letter, after a blank.
+        In ``q* q'`` a factor follows, but it is the same letter, after a blank: then the star marks a conjugate
+        too.
         """
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
@@ -91,14 +92,14 @@ class PiecesPart(OpenFunctionsPart):
         )
 
     def is_skew_cross(self, node: Node) -> bool:
-        """Return whether a cross directly after square brackets, ``[n]x`` or ``[n]×``, makes a skew matrix."""
+        """Return whether a cross directly after square brackets, as in ``[n]x`` or ``[n]×``, means a skew matrix."""
         token, after = self.token(), self.token(1)
         if node.kind != "list" or len(node.args) != 1 or token.text not in ("x", "×") or token.spaced:
             return False
         return self.tokens[self.index - 1].text == "]" and (after.spaced or after.kind in ("end", "mark", "power"))
 
     def is_index(self) -> bool:
-        """Return whether square brackets hold an index, as in ``M[0, 1]``; in ``m[a^2 + b^2]`` they hold a factor."""
+        """Return whether square brackets contain an index, as in ``M[0, 1]``, not a factor as in ``m[a^2 + b^2]``."""
         depth, inside = 0, self.tokens[self.index + 1 :]
         names = False
         for token in inside:
@@ -111,7 +112,7 @@ class PiecesPart(OpenFunctionsPart):
         return True
 
     def method(self, node: Node, start: int) -> Node:
-        """Read a method of a matrix after a dot, such as ``.T``, and return its value as a tree."""
+        """Parse a matrix method after a dot, such as ``.T``, and return the tree of its value."""
         token = self.token()
         if token.kind != "name" or token.text not in METHODS:
             names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
@@ -132,7 +133,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return the time derivative that primes or dots after a name mean; ``x'`` may also be a name by itself."""
+        """Return the time derivative that primes or dots after a name mean, or the name ``x'`` if that is meant."""
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
@@ -176,7 +177,7 @@ class PiecesPart(OpenFunctionsPart):
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
         function = self.vocabulary.function(word)
         if self.as_sympy and self.peek() != "(" and word not in BUILT_IN and word not in self.vocabulary.functions:
-            function = None  # a name in SymPy's text
+            function = None  # a name in SymPy syntax
         elif function is None and word in SINGLE_ARGUMENT and word not in self.vocabulary.symbols:
             function = word  # a function that is not built in, which the interpreter refuses
         if word == "Rational" and self.peek() == "(":
@@ -199,7 +200,7 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is not built in; return a symbol, or a function with the arguments in its bracket."""
+        """Parse a name that is not built in; return a symbol, or a function with its arguments in brackets."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if word == "S" and self.peek() == "(" and inside[0] in self.vocabulary.vectors and inside[1] == ")":
@@ -215,7 +216,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("name", word, (), self.span(token.start))
 
     def is_factor(self, word: str) -> bool:
-        """Return whether a name before a bracket is a symbol, so that the bracket is a factor and no argument.
+        """Return whether a name before a bracket is a factor of a product, and not a function with arguments.
 
         It is, if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
         """
@@ -266,14 +267,14 @@ class PiecesPart(OpenFunctionsPart):
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
 
     def holds_skew_vector(self) -> bool:
-        """Return whether the square bracket before the cursor is that of a skew matrix, ``[R ω]×``: no commas, a ×."""
+        """Return whether the square bracket before the cursor is the skew matrix of a vector, ``[R ω]×``."""
         inside = [token.text for token in self.tokens[self.index :]]
         end = inside.index("]") if "]" in inside else 0
         cross = self.token(end + 1)
         return end > 0 and not {",", ";", "["} & {*inside[:end]} and cross.text == "×" and cross.tight
 
     def has_blanks(self, entry: Node) -> bool:
-        """Return whether an entry of a matrix has two names with only blanks between them, which may be two entries."""
+        """Return whether a matrix entry has two names with only blanks between them, which may be two entries."""
         inner = entry.args[0] if entry.kind == "neg" else entry
         pairs = pairwise(inner.args if inner.kind == "product" else ())
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]

@@ -1,4 +1,4 @@
-"""The tokens of claims as people type them: ASCII and Unicode, each with its place in the text.
+"""Splitting a claim as people type it into tokens: ASCII and Unicode, each with its place in the text.
 
 Greek letters become their names, dots over letters and primes become derivatives, raised digits become powers. A
 character that means nothing in a formula is refused with its place.
@@ -102,12 +102,12 @@ _DIGITS = re.compile(r"[0-9]+", re.ASCII)
 
 
 def tokens_of(source: str, where: str = "") -> Iterator[Token]:
-    """Yield the tokens of a text; the last one is of kind ``end``.
+    """Yield the tokens of a text; the last one has the kind ``end``.
 
     Raises
     ------
     InputError
-        For a character that means nothing in a formula, with its place and with a character to write instead.
+        For a character that means nothing in a formula; the message suggests another one.
     """
     text, places = _accents_after_letters(*_written_out(source.rstrip()))
     places.append(len(source.rstrip()))
@@ -131,13 +131,13 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
 
 
 def without_dots(name: str) -> str:
-    """Return a name as it is typed, without the dots over it."""
+    """Return a typed name without the dots over it."""
     parts = (_ALIKE.get(part, part) for part in unicodedata.normalize("NFD", name))
     return "".join(part for part in parts if part not in _DOTS)
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
-    """Return the text with a single character for each meaning, and the place of each character in the source."""
+    """Return the text in a single spelling of each sign, and the place of each of its characters in the source."""
     written: list[str] = []
     places: list[int] = []
     for place, character in enumerate(source):
@@ -148,7 +148,7 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text in which a dot or hat before a letter, as text copied from a PDF has it, comes after the letter."""
+    """Return a text in which dots and hats come after their letters; text copied from a PDF has them before."""
     characters, places = list(text), [*places]
     for at in range(len(characters) - 1):
         alone = characters[at] in _OVER and not (at and (characters[at - 1].isalpha() or characters[at - 1] in _OVER))
@@ -170,7 +170,7 @@ def _alike(character: str) -> str:
 
 
 def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield kind, text and end of the tokens that start at a place: one token, or a name and the dots over it."""
+    """Yield (kind, text, end) of the tokens that start at a place: one token, or a name and the dots over it."""
     character = text[at]
     if number := _NUMBER.match(text, at):
         yield "number", number[0], number.end()
@@ -226,7 +226,10 @@ def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
-    """Yield the tokens of a name of Latin letters. Dots are over its last letter only, so that ``mẍ`` has two names."""
+    """Yield the tokens of a name of Latin letters.
+
+    Dots belong to its last letter only, so that ``mẍ`` has two names.
+    """
     word, stop = name[0], name.end()
     if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
         yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")
@@ -254,12 +257,12 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
 
 
 def _written(digits: str) -> str:
-    """Return raised or lowered digits as plain ones."""
+    """Return raised or lowered digits as ordinary digits."""
     return "".join(_RAISED.get(digit, _LOWERED.get(digit, digit)) for digit in digits)
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield a single letter with its subscript, then the dots over it."""
+    """Yield the token of a single letter with its subscript, then the token of the dots over it."""
     stop = at + 1
     dots = 0
     over = ""

@@ -75,7 +75,7 @@ WORDS_WITH_I = ("if", "in", "is")
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
-    """Return the names and numbers that a word may consist of, in order, and whether splitting it is usual.
+    """Return the names and numbers into which a word may be split, in order, and whether splitting it is usual.
 
     The result is empty if the word is a name. ``alone`` are the names that the text uses separately.
 
@@ -119,7 +119,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
 
 
 class Shorthand(NamedTuple):
-    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its first token, its number of tokens, its formula."""
+    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its place, number of tokens, function and angle."""
 
     place: int
     length: int
@@ -127,7 +127,7 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens of the full formula, cos(theta), with the places of the tokens that it replaces."""
+        """Return the tokens of the full formula cos(theta), at the places of the tokens that it replaces."""
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (
@@ -147,7 +147,7 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb``; none unless several angles have both of them."""
+    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb`` in a text, if several angles have both a c and an s."""
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
@@ -162,7 +162,7 @@ def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the parts of a text that may be short for the cosine or sine of an angle, such as ``cθ``."""
+    """Return the places of a text where a cosine or sine may be abbreviated, as in ``cθ``."""
     short = shorthands_of_letters(tokens)
     if short:
         return short
@@ -182,7 +182,7 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def lost_power(word: str) -> tuple[str, ...]:
-    """Return sin, ^ and 2 for ``sin2``, which may be sin² copied from a PDF; an empty tuple for other words.
+    """Return sin, ^ and 2 for ``sin2``, which may be sin² with a lost raised digit; an empty tuple for other words.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def lost_power(word: str) -> tuple[str, ...]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens in which the tokens of several names replace each word in ``words``."""
+    """Yield tokens; each word that is a key of ``words`` is replaced by the tokens of the names there."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):

@@ -1,4 +1,4 @@
-"""The factors from units to SI units, exact, and the numbers with units in a text such as ``1500 rpm = 157.08 rad/s``.
+"""Exact factors from units to SI units, and texts with numbers and units such as ``1500 rpm = 157.08 rad/s``.
 
 A text has units if it consists of numbers with units, and perhaps of one name for the result. In ``T = 2 m g`` the
 letters are quantities: a letter such as m is read as a unit only if the text has a unit with several letters, or no
@@ -106,7 +106,7 @@ LARGEST_IN_NOTE = 10**6
 
 @dataclass(frozen=True)
 class UnitProduct:
-    """A product of units: its text, dimension, and exact factor to SI units."""
+    """A product of units such as ``kg m^2``: its text, its dimension, and its exact factor to SI units."""
 
     text: str
     dimension: Dimension
@@ -115,7 +115,7 @@ class UnitProduct:
 
     @property
     def note(self) -> str:
-        """The factor to SI units as an equation, or an empty text for an SI unit and for a factor that is long."""
+        """The factor to SI units, as ``1 rpm = pi/30 rad/s``; empty for an SI unit, and for a factor that is long."""
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
@@ -134,10 +134,10 @@ class UnitProduct:
 
 @dataclass(frozen=True)
 class Measured:
-    """A text whose numbers have units: the text with a name for each product of units, and these products.
+    """A text whose numbers have units: ``text`` has a name in place of each product of units, and ``units`` lists them.
 
-    ``is_sure`` says that these certainly are units: one of them has several letters, or the text has no other name.
-    ``others`` are other readings of the text, each with the words for what it reads in another way.
+    ``is_sure``: they are certainly units, since one of them has several letters or the text has no other name.
+    ``others`` are other readings (interpretations) of the text, each with words that say what it reads differently.
     """
 
     source: str
@@ -147,7 +147,7 @@ class Measured:
     others: tuple[tuple[str, "Measured"], ...] = ()
 
     def restored(self, text: str) -> str:
-        """Return a text about the claim with the units in place of their names."""
+        """Return a text about the claim in which the units replace the names that stand for them."""
         return re.sub(
             r"(\w)?\*?(unit_\d+)", lambda match: f"{match[1] or ''} {self.units[match[2]].text}".lstrip(), text
         )
@@ -155,14 +155,14 @@ class Measured:
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to read a text: the other meanings of units, and whether a number with its unit divides as a whole."""
+    """One way to read a text: the units with their other meaning, and whether ``a/2 m`` divides by all of ``2 m``."""
 
     meanings: frozenset[str] = frozenset()
     by_whole: bool = True
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with names for its units, or None for a text that has no numbers with units.
+    """Return a text with names in place of its units, or None for a text without numbers that have units.
 
     Raises
     ------
@@ -198,7 +198,7 @@ def measured_text(source: str) -> Measured | None:
 
 
 def _plain(source: str) -> str | None:
-    """Return a text with units without the commands of LaTeX; None if some are left."""
+    """Return a text with units in which plain signs replace LaTeX commands; None if other LaTeX commands remain."""
     plain = source
     for pattern, instead in _LATEX:
         plain = re.sub(pattern, instead, plain)
@@ -206,7 +206,7 @@ def _plain(source: str) -> str | None:
 
 
 def numbers_of_latex(source: str) -> str:
-    r"""Return plain text for LaTeX without names, such as ``\pi = 3.14``, in which a decimal number is rounded; or "".
+    r"""Return plain text for LaTeX that has only numbers, one of them a rounded decimal number: ``\pi = 3.14``. Or "".
 
     Examples
     --------
@@ -246,9 +246,9 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return the beginning of a chain of equations that has letters, and its end that has numbers with units only.
+    """Split a chain of equations into its beginning with letters and its end, where all sides are numbers with units.
 
-    Both are empty if there is no such end of at least two links.
+    Both are empty if fewer than two sides at the end are such numbers.
 
     Examples
     --------
@@ -264,7 +264,7 @@ def numeric_end(source: str) -> tuple[str, str]:
 
 
 def unit_beside_letters(source: str) -> str:
-    """Return the first number with a unit, in a text with other letters, that is surely no product of letters; or "".
+    """Return the first number with a unit in a text with other letters, if it is surely no product of letters; or "".
 
     It is sure if the unit has several letters, or if a side is only this number with a unit such as m/s^2, and the
     other sides have none of these letters.
@@ -294,7 +294,7 @@ def unit_beside_letters(source: str) -> str:
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text with units has no other names than one for the result, on the left."""
+    """Return whether a text has no names but those of units, except one for the result on its left side."""
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):
         return False
@@ -307,7 +307,7 @@ def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct
 
 
 def _pieces(text: str) -> Iterator[tuple[str, int]]:
-    """Yield the units of a product with their powers."""
+    """Yield the units in a product such as ``kg m^2/s``, each with its power."""
     for match in _PIECE.finditer(text):
         mark = match["power"]
         power = _SUPERSCRIPTS[mark] if mark in _SUPERSCRIPTS else int(re.sub(r"[\^*()]", "", mark) or 1)
@@ -316,7 +316,7 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
 
 
 def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
-    """Return a product of units, some of them with their other meaning."""
+    """Return the product of units that a text states. Units in ``meanings`` have their less usual meaning."""
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0
     for name, power in _pieces(text):
