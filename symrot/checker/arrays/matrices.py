@@ -82,14 +82,12 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
         name = str(node.args[0].value) if node.kind == "call" and node.value in ("det", "trace") else ""
         if name[:1].isupper() and name in vectors and not is_tensor(name):
             matrices[name] = False
-    multiplied = [
-        part for node in nodes if node.kind == "call" and node.value in ("dot", "cross") for part in node.args
-    ]
-    vectors = {name for name in vectors if Node("name", name) not in multiplied}
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
             name = _name_of_array(first)
-            if name[:1].isupper() and name in vectors and not is_tensor(name) and _is_array(second, vectors):
+            is_vector = Node("call", "dot", (first, second)) in nodes  # F·d = F d cos θ
+            is_capital = name[:1].isupper() and name in vectors and not is_tensor(name)
+            if is_capital and _is_array(second, vectors) and not is_vector:
                 rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
                 matrices[name] = name in rates
     return matrices

@@ -1,10 +1,12 @@
 """Parsing sums, products, powers, brackets and matrices in LaTeX, by the order of operations."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
@@ -290,6 +292,11 @@ class SumsPart(Cursor):
         mark = self.peek()
         if not crossed:
             is_cross = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
+            if isinstance(mark, tree.Script) and mark.text == "_" and inner.value == "cross":
+                index, used = tree.alone(mark.inside).text, "".join(re.findall(r"_\{?(\w+)", self.source))
+                if (component := component_of_cross(inner.args, index, used)) is not None:
+                    self.next()
+                    return component
             if opening.text != "[" or not is_cross:
                 return inner
             self.next()

@@ -5,6 +5,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.densities import over_mass
 from symrot.checker.claim.functions import BUILT_IN
@@ -67,6 +68,8 @@ class PiecesPart(OpenFunctionsPart):
                 self.plain = True
                 self.next()
                 node = Node("call", CONJUGATE, (node,), self.span(start))
+            elif token.text == "_" and (component := self.component(node)) is not None:
+                node = component
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
                     raise self.fail("a single degree sign")
@@ -76,6 +79,14 @@ class PiecesPart(OpenFunctionsPart):
                 node = product(degrees, self.span(start))
             else:
                 return node
+
+    def component(self, node: Node) -> Node | None:
+        """Read the index after the bracket in ``(ω × r)_i`` and return the component of the cross product."""
+        index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
+        made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
+        self.plain = True
+        self.index += 2 * (made is not None)
+        return made
 
     def is_star(self) -> bool:
         """Return whether a star marks a conjugate, as in ``q v q*``: no blank is before it, and no factor follows.

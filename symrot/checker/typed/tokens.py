@@ -182,6 +182,8 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield from _letter(text, at, LETTERS[character])
     elif character == "∂":
         yield from _differential(text, at + 1)
+    elif character == "_" and at and text[at - 1] in ")]":
+        yield "mark", "_", at + 1
     elif text[:at].rstrip().endswith("∫") and (character == "_" or character in _LOWERED):
         yield from _lower_limit(text, at)
     elif name := _NAME.match(text, at):
