@@ -1,6 +1,6 @@
 """Rules of differentiation, such as ``diff(x*y, q) == diff(x, q)*y + x*diff(y, q)``, whose letters are functions.
 
-SymPy's text writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
+SymPy syntax writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
 holds for all functions.
 """
 
@@ -22,10 +22,10 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim whose letters are functions of the variable, where the text differentiates them; otherwise None.
+    """Return a claim in which letters become functions of the variable by which the text differentiates them; or None.
 
-    The functions are functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
-    this name. A claim with more than one variable is left out, and so is one that has both t and another variable.
+    They become functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
+    this name. Return None for a claim with several variables, and for one that has both t and another variable.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -53,7 +53,7 @@ def as_functions(claim: Claim) -> Claim | None:
 def _on_letters(
     names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
 ) -> Iterator[str]:
-    """Yield the sentences that say which letters of the derivatives are functions, and which are constants."""
+    """Yield the notes which say which letters in the derivatives are functions, and which are constants."""
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
     letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
     if constants := sorted(letters - {*names, *defined, variable, "t", "pi"}):
@@ -84,7 +84,7 @@ def _plain(value: Expr) -> Expr:
 
 
 def _is_of_formula(derivative: Node) -> bool:
-    """Return whether a derivative is one of a formula without derivatives, and not one of a single letter."""
+    """Return whether a derivative is one of a sum, product or power that contains no further derivatives."""
     inner = derivative.args[0]
     return inner.kind in ("sum", "product", "power") and not any(_is_derivative(node) for _, node in walk(inner))
 
@@ -94,7 +94,7 @@ def _is_derivative(node: Node) -> bool:
 
 
 def _with_variable(node: Node, name: str) -> Node:
-    """Return a tree in which the variable of differentiation is t."""
+    """Return a tree with t in place of ``name``, the variable of differentiation."""
     if node.kind == "name" and node.value == name:
         return TIME
     return Node(node.kind, node.value, tuple(_with_variable(child, name) for child in node.args), node.span)

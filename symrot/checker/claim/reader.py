@@ -317,7 +317,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` is one name where it is the left side of an equation.
+        """Return tokens in which ``ωp``, an ω with the index p, is one name where it is the left side of an equation.
 
         Anywhere else ``ωp`` is the product of ω and p.
         """

@@ -561,7 +561,10 @@ def _obstacle(ring: FormulaRing) -> str:
         return f"too little is known here about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])
-        return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
+        return (
+            f"whether the sides are equal depends on the sign of {roots}, "
+            "and no point was found where they provably differ"
+        )
     if ring.hypotheses:
-        return f"none of {ATTEMPTS} points drawn obeys the hypotheses and shows a difference; no proof was found either"
+        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference; nor was a proof found"
     return "no rational point was found at which the sides differ, since an angle depends on other symbols"

@@ -223,12 +223,12 @@ class NamesPart(SumsPart):
         r"""Parse ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
-            raise self.fail("the terms of a sum with +", sign)
+            raise self.fail("the terms of the sum, joined by +,", sign)
         self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record a name as a vector or tensor whose components have no names yet; return its node, marked with MARK."""
+        """Record a name as a vector or tensor that needs names for its components; return its node, ending in MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -254,9 +254,9 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse, with ``read``, what is under a mark, and the subscript and primes after it:
+        r"""Parse what is under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``.
 
-        ``\dot{\mathbf{H}}_G``.
+        ``read`` parses it.
         """
         scripts = []
         while script := self.script("_") or self.script("'"):

@@ -198,7 +198,7 @@ class SumsPart(Cursor):
                 raise self.fail("brackets around a repeated power", raised)
             is_function = node.kind == "call" and node.value in FUNCTIONS.values()
             if is_function and item.start not in self.short and self.flips is None:
-                raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
+                raise self.fail(f"the power directly after the function, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
         return node
 
