@@ -116,6 +116,8 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
         return None
     for factor, _ in numerator.factor_list()[1]:
         used = [number for number in names if any(mono[number] for mono in factor)]
+        if len(used) == 2 and (multiple := _principal_multiple(ring, factor, names)) is not None:
+            return multiple
         if len(used) != 1 or factor.degrees()[used[0]] != 1:
             continue
         (place,) = used
@@ -135,6 +137,44 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
                 inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
                 return PrincipalValueProof(edge, inside, (other, *further))
     return None
+
+
+def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
+    """Return a proof of where a combination of two inverse functions is zero, as ``asin(3*x - 4*x^3) - 3*asin(x)`` is.
+
+    If S is proven to be the sine of w = 3 asin(x), the difference is zero exactly where w lies in [-pi/2, pi/2]. These
+    bounds of w are bounds of x. Return None for other combinations.
+    """
+    terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
+    leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
+    if len(leaves) != 2 or any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
+        return None
+    constant = sum((Rational(multiple) * pi for leaf, multiple in terms or () if leaf is pi), Integer(0))
+    for (leaf, own), (inner, multiple) in (leaves, leaves[::-1]):
+        factor_of_inner, shift = -Rational(multiple / own), -constant / Rational(own)
+        angle = factor_of_inner * inner + shift
+        function, least, most = _PRINCIPAL[type(leaf)]
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
+            further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
+            if further is not None:
+                bounds = sorted([(least - shift) / factor_of_inner, (most - shift) / factor_of_inner])
+                ends = _ends_of_argument(inner, *bounds)
+                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+                return PrincipalValueProof(edge, inside, (other, *further))
+    return None
+
+
+def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
+    """Return formulas that are nonnegative where an inverse function has values from ``low`` to ``high``."""
+    function, least, most = _PRINCIPAL[type(inner)]
+    sign = -1 if isinstance(inner, acos) else 1  # acos decreases
+    ends = []
+    if low > least:
+        ends.append(sign * (inner.args[0] - function(low)))
+    if high < most:
+        ends.append(sign * (function(high) - inner.args[0]))
+    return tuple(ends)
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:

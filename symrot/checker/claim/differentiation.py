@@ -34,10 +34,11 @@ def as_functions(claim: Claim) -> Claim | None:
     variables = {argument for node in derivatives for argument in node.args[1:] if argument.kind != "number"}
     names = {str(node.args[0].value) for node in derivatives if node.args[0].kind == "name"}
     names -= {"t", "pi", *(str(variable.value) for variable in variables), *dict(claim.define)}
-    functions = {node.value for node in nodes if node.args == (TIME,)}
-    moving = {*names, *functions, *dict(claim.define), *(variable.value for variable in variables)}
-    letters = [{node.value for _, node in walk(derivative.args[0])} for derivative in derivatives]
-    if claim.hypotheses or len(variables) != 1 or not names or any(moving.isdisjoint(inner) for inner in letters):
+    functions = {str(node.value) for node in nodes if node.args == (TIME,)}
+    moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
+    letters = [_letters(derivative.args[0]) for derivative in derivatives]
+    names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
+    if claim.hypotheses or len(variables) != 1 or not names:
         return None
     (variable,) = variables
     if variable.kind != "name" or (variable != TIME and TIME in nodes):
@@ -48,6 +49,11 @@ def as_functions(claim: Claim) -> Claim | None:
     notes = (*claim.notes, *_on_letters(names, derivatives, str(variable.value), dict(claim.define)))
     return replace(claim, relation=(sign, left, right), symbols=symbols, functions=others, alternatives=(),
                    sources={}, notes=notes)  # fmt: skip
+
+
+def _letters(tree: Node) -> set[str]:
+    """Return the names of the symbols and of the functions of time in a tree."""
+    return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
 
 
 def _on_letters(

@@ -12,6 +12,7 @@ from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
+from symrot.checker.typed.defined_functions import TWO_CONVENTIONS
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
@@ -222,6 +223,8 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
         expected = f"a built-in function, or one declared as a function of t, instead of {name!r} ({known})"
+        if name in ("acot", "arccot"):
+            expected = TWO_CONVENTIONS
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)
     return _function_of_time(interpreter, node)
