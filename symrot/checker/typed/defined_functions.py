@@ -1,4 +1,4 @@
-"""Functions that are defined by other functions: coth, sech, csch, their inverses, asec and acsc, and the argument of a number.
+"""Functions that are defined by other functions: coth, sech, csch, their inverses, asec, acsc, and arg.
 
 acot is not among them, since books define it by two formulas.
 """
