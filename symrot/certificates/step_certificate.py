@@ -162,7 +162,7 @@ def _proof(step: StepUnderTest, suffix: str) -> Data:
 
 
 def _degree(step: StepUnderTest, operations: Operations, point: int) -> int:
-    """Compare C text and formula at one random point; return the largest degree of an output."""
+    """Compare C text and formula at one random point; return the largest degree of an output as a rational function."""
     places = {
         (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
         for a in step.program.signature.arguments
