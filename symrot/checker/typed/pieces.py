@@ -183,6 +183,8 @@ class PiecesPart(OpenFunctionsPart):
         word = token.text
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
+        if self.source[token.start] == "∂":
+            raise self.fail("a derivative ∂f/∂x (or write diff(f, x))", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
