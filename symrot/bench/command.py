@@ -162,10 +162,12 @@ def arguments(parser: ArgumentParser) -> None:
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
-    add("--methods", metavar="NAMES", help="methods, separated by commas, of exact, taylor, dop853, scipy, heyoka, "
-        "DOP853, RK45, LSODA and Radau (default: all)")  # fmt: skip
+    add("--methods", metavar="NAMES", help="methods to compare, separated by commas: exact, taylor, "
+        "dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau (default: all)")  # fmt: skip
     add(
-        "--tolerances", metavar="LIST", help="tolerances, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)"
+        "--tolerances",
+        metavar="LIST",
+        help="tolerances of the methods, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)",
     )
     add(
         "--rounds",
