@@ -205,7 +205,7 @@ class NamesPart(SumsPart):
         r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
-            raise self.fail("eye(n) among the definitions for a unit matrix", inside)
+            raise self.fail("the name of a unit matrix that is defined as eye(n), not a bold number,", inside)
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node
