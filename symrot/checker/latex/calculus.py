@@ -3,12 +3,12 @@
 from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.densities import over_mass
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.checker.typed.defined_functions import DEFINED, INVERSES, TWO_CONVENTIONS
+from symrot.checker.typed.densities import over_mass
 from symrot.latex import tree
 
 __all__ = ["DOTS", "CalculusPart"]

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
-from symrot.checker.claim.densities import over_mass
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number, product
 from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS, TIME
+from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
 from symrot.checker.typed.words import PARTS, SINGLE_ARGUMENT
