@@ -310,7 +310,9 @@ def test_a_difference_under_flags_that_keep_bits_fails():
         and "clang is not on" in output_lines[2]
     )
     counts = compiled.table({"one": both, "two": both, "three": None})
-    assert counts[:2] == ["  gcc for bits: 2 of 2", "  gcc for bounds: 0 of 2"] and counts[2].startswith("    one: does not")
+    assert counts[:2] == ["  gcc for bits: 2 of 2", "  gcc for bounds: 0 of 2"] and counts[2].startswith(
+        "    one: does not"
+    )
 
 
 @pytest.mark.parametrize("arguments", [["quaternion_dcm"], ["--all"]])
