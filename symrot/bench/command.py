@@ -1,4 +1,4 @@
-"""The modes of ``symrot bench`` as a table; each mode is an option of the command line.
+"""The command ``symrot bench``: a table of its modes, each of which is chosen by an option of the command line.
 
 A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
 mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to

@@ -1,4 +1,4 @@
-"""Messages about wrong answers and the credit for each kind of error: one table for numbers, one for formulas."""
+"""Tables of the messages about wrong answers, with the credit for each kind of error: for numbers and for formulas."""
 
 from fractions import Fraction
 
