@@ -60,7 +60,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and seconds per sample for each shape of input and round.
+    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input.
 
     The shapes of input are "one" sample at a time, a "cached" batch and "many" samples.
     """
@@ -89,7 +89,7 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return inputs and outputs in memory that all contestants share; samples are rows, or columns in a batch.
+    """Return arrays for inputs and outputs that all contestants share; samples are rows, or columns in a batch.
 
     The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
     ordinary allocation, their distance modulo a page and the kind of pages would differ in each run, and every second
@@ -210,7 +210,7 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function of ``place`` that times ``run(repeats, place)`` in s per sample, with enough repeats."""
+    """Return a function that calls ``run(repeats, place)`` with enough repeats, and returns its time per sample, s."""
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
@@ -267,7 +267,7 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return each tool's version of a kernel, beginning with symrot's, and the names of the missing tools.
+    """Return the contestants for a kernel (one per tool, symrot first), and the names of the missing tools.
 
     Raise AssertionError if the outputs of two tools differ.
     """
@@ -308,7 +308,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions and outputs of CasADi's own evaluation, which maps a function over the samples."""
+    """Return timing functions and outputs for CasADi's own evaluation, which maps a function over the samples."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -412,7 +412,7 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 of its time."""
+    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 times its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over

@@ -297,7 +297,7 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Compare C text and formula at one random point; return the largest degree of an output."""
+    """Compare C text and formula at one random point; return the largest degree of an output as a rational function."""
     values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = _exact(operations.precision)
     computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)

@@ -57,7 +57,7 @@ def help_text() -> str:
     for title, rows in tables().items():
         parts.append("\n".join([f"{title}:", *_plain_rows(rows[1:])]))
     parts.append(textwrap.fill(f"Built-in functions: {', '.join(functions())}.", WIDTH))
-    return "\n\n".join([*parts, textwrap.fill(BUDGET, WIDTH)]).replace("%", "%%")
+    return "\n\n".join([*parts, textwrap.fill(BUDGET, WIDTH)])
 
 
 def _plain_rows(rows: Sequence[Sequence[str]]) -> Iterator[str]:

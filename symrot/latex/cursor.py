@@ -18,8 +18,8 @@ Value = TypeVar("Value")
 class Cursor:
     """A position in a row of items of the LaTeX tree, from which the next item is read.
 
-     Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
-     item are separate items after it.
+    Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
+    item are separate items after it.
 
     Attributes
     ----------

@@ -74,7 +74,7 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether compared object code differs from the C text under flags that must keep its bits."""
+        """Whether object code differs from the C text although its compiler flags must preserve the bits of results."""
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:

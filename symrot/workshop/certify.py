@@ -248,7 +248,7 @@ def certify_all(
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
     """Return the certificates of all kernels of the library and of shipped scenes, and the paths of the written files.
 
-     Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
+    Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
      are written or object code is compared.
 
     Parameters
@@ -299,7 +299,7 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether compared object code differs from the C text under flags that must preserve its bits."""
+    """Return whether object code differs from the C text although its compiler flags must preserve the bits."""
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
@@ -353,7 +353,7 @@ def lines(data: Data, compared: bool = True) -> list[str]:
             f"; the series of {s[0]} is truncated by less than {_short(s[3])} of its value" for s in function["series"]
         )
         count = sum(function["operations"].values())
-        rows.append(("C text", f"{name} and its batch are the formulas, {count} operations{series}"))
+        rows.append(("C text", f"{name} and its batch function compute the formulas in {count} operations{series}"))
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"

@@ -97,7 +97,7 @@ def test_series_of_functions_contain_their_derivatives(name):
     with mpmath.workdps(40):
         a, b, c = (mpmath.mpf(value) / 8 for value in (5, -3, 7))
         exact = mpmath.taylor(lambda h: getattr(mpmath, name)(a + b * h + c * h * h), 0, 5)
-    series = _OF_SERIES[name](_Power(tuple(_number(Fraction(value, 8)) for value in (5, -3, 7)) + (0, 0, 0)))
+    series = _OF_SERIES[name](_Power((*(_number(Fraction(value, 8)) for value in (5, -3, 7)), 0, 0, 0)))
     for interval, value in zip(series.terms, exact, strict=True):
         assert float(interval.a) - 1e-12 <= float(value) <= float(interval.b) + 1e-12
         assert float(interval.delta) < 1e-10

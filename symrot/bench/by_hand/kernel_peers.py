@@ -1,4 +1,4 @@
-"""Kernels from the same textbook formulas, made by other tools (SymPy, SymForce, CasADi, heyoka) or by hand.
+"""Kernels for comparison, generated from textbook formulas by SymPy, SymForce, CasADi and heyoka, or written by hand.
 
 Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. It
 differentiates them itself, if the kernel has derivatives. C code is compiled with the flags of symrot's kernels. A tool
@@ -120,7 +120,7 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return C text that computes common terms first and then the results, without further simplification."""
+    """Return a program that computes the common terms first and then the results, without further simplification."""
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))

@@ -273,7 +273,7 @@ class _Products:
         return self.multiplied(node) if node.kind == "product" else node
 
     def multiplied(self, node: Node) -> Node:
-        """Return a product with Hamilton products of its quaternions and of the vectors between them."""
+        """Return a product in which quaternions, and the vectors between them, are multiplied as Hamilton products."""
         norms = [part for factor in node.args if factor.kind == "product" for part in factor.args if part.kind == "inv"]
         if norms:  # of an inverse, the conjugate over the square of the norm
             parts = [part for factor in node.args for part in (factor.args if factor.kind == "product" else (factor,))]

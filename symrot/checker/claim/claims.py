@@ -109,7 +109,7 @@ class Claim:
 
     @property
     def without_context(self) -> "Claim":
-        """The claim without its context, which is what the user states in words about names and the body."""
+        """The claim without its context: without what the user states in words about names and the body."""
         return replace(self, context=NO_CONTEXT)
 
     @property

@@ -1,6 +1,6 @@
 """Rules of differentiation, such as ``diff(x*y, q) == diff(x, q)*y + x*diff(y, q)``, whose letters are functions.
 
-SymPy's text writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
+SymPy syntax writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
 holds for all functions.
 """
 
@@ -22,10 +22,10 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim whose letters are functions of the variable, where the text differentiates them; otherwise None.
+    """Return a claim in which letters become functions of the variable by which the text differentiates them; or None.
 
-    The functions are functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
-    this name. A claim with more than one variable is left out, and so is one that has both t and another variable.
+    They become functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
+    this name. Return None for a claim with several variables, and for one that has both t and another variable.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -34,10 +34,11 @@ def as_functions(claim: Claim) -> Claim | None:
     variables = {argument for node in derivatives for argument in node.args[1:] if argument.kind != "number"}
     names = {str(node.args[0].value) for node in derivatives if node.args[0].kind == "name"}
     names -= {"t", "pi", *(str(variable.value) for variable in variables), *dict(claim.define)}
-    functions = {node.value for node in nodes if node.args == (TIME,)}
-    moving = {*names, *functions, *dict(claim.define), *(variable.value for variable in variables)}
-    letters = [{node.value for _, node in walk(derivative.args[0])} for derivative in derivatives]
-    if claim.hypotheses or len(variables) != 1 or not names or any(moving.isdisjoint(inner) for inner in letters):
+    functions = {str(node.value) for node in nodes if node.args == (TIME,)}
+    moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
+    letters = [_letters(derivative.args[0]) for derivative in derivatives]
+    names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
+    if claim.hypotheses or len(variables) != 1 or not names:
         return None
     (variable,) = variables
     if variable.kind != "name" or (variable != TIME and TIME in nodes):
@@ -50,10 +51,15 @@ def as_functions(claim: Claim) -> Claim | None:
                    sources={}, notes=notes)  # fmt: skip
 
 
+def _letters(tree: Node) -> set[str]:
+    """Return the names of the symbols and of the functions of time in a tree."""
+    return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
+
+
 def _on_letters(
     names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
 ) -> Iterator[str]:
-    """Yield the sentences that say which letters of the derivatives are functions, and which are constants."""
+    """Yield the notes which say which letters in the derivatives are functions, and which are constants."""
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
     letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
     if constants := sorted(letters - {*names, *defined, variable, "t", "pi"}):
@@ -61,9 +67,10 @@ def _on_letters(
 
 
 def is_rule(claim: Claim) -> bool:
-    """Return whether both sides have derivatives, one of a longer formula, and one side has all letters of the other.
+    """Return whether a claim is a rule of differentiation: both sides have derivatives, one of them of a whole formula.
 
-    ``diff(y, x) == y`` is an equation for y and no rule, and so is ``diff(x, t) == diff(y, t)``.
+    Moreover, one side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
+    so is ``diff(x, t) == diff(y, t)``.
     """
     assert claim.relation is not None
     nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]
@@ -84,7 +91,7 @@ def _plain(value: Expr) -> Expr:
 
 
 def _is_of_formula(derivative: Node) -> bool:
-    """Return whether a derivative is one of a formula without derivatives, and not one of a single letter."""
+    """Return whether a derivative is one of a sum, product or power that contains no further derivatives."""
     inner = derivative.args[0]
     return inner.kind in ("sum", "product", "power") and not any(_is_derivative(node) for _, node in walk(inner))
 
@@ -94,7 +101,7 @@ def _is_derivative(node: Node) -> bool:
 
 
 def _with_variable(node: Node, name: str) -> Node:
-    """Return a tree in which the variable of differentiation is t."""
+    """Return a tree with t in place of ``name``, the variable of differentiation."""
     if node.kind == "name" and node.value == name:
         return TIME
     return Node(node.kind, node.value, tuple(_with_variable(child, name) for child in node.args), node.span)

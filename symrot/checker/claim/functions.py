@@ -47,12 +47,12 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
-            raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
+            raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms when expanded")
         if below is not None:
             scope.divide_by(below(value), node)
         made = function(value)
         if value.is_number and not made.is_Rational and enclosure(made) is None:
-            raise scope.fail(node, "a number whose digits can be computed instead of deeply nested functions")
+            raise scope.fail(node, "a number that can be computed to many digits instead of deeply nested functions")
         return made
 
     return call
@@ -157,7 +157,7 @@ def _det(scope: Scope, node: Node) -> Expr:
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products instead of {products}")
+        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products, not {products},")
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
 
 
@@ -191,7 +191,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
         raise scope.fail(
-            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products instead of {products}"
+            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products, not {products},"
         )
     return matrix.adjugate(method="berkowitz")
 
@@ -318,7 +318,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
         variable = scope.scalar(place.args[0], "to integrate over")
         lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
-            raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
+            raise scope.fail(place, "a symbol to integrate over, which does not occur in its limits,")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
     total = scope.evaluate(integrand)
@@ -326,7 +326,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
     needs = [d.value for d in scope.divisors[divisors_before:] if not d.value.is_nonzero]
     needs += [radicand for radicand in scope.radicands[radicands_before:] if not radicand.is_nonnegative]
     if any(need.has(variable) for need in needs for variable, _, _ in limits):
-        raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
+        raise scope.fail(integrand, "an integrand without the variable in divisors and under roots")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         entries = []
         for entry in total if is_matrix(total) else [total]:

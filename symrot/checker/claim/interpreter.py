@@ -12,6 +12,7 @@ from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
+from symrot.checker.typed.defined_functions import TWO_CONVENTIONS
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
@@ -58,7 +59,7 @@ class Interpreter(Scope):
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:
             if is_unordered(reason):
-                raise self.fail(node, "numbers that can be ordered by their digits") from None
+                raise self.fail(node, "numbers of which it can be told which is larger") from None
             raise
 
 
@@ -84,7 +85,7 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
     if name in UNKNOWN_HERE:
         hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
         raise interpreter.fail(
-            node, f"a symbol of another name{hint} since {name!r} means something else to most readers,"
+            node, f"a symbol with another name{hint} since {name!r} means something else to most readers,"
         )
     symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
     return symbol
@@ -173,7 +174,7 @@ def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponen
     interpreter.shape(base, node.args[0])
     interpreter.within_nesting(exponent, node.args[1])
     if base.is_nonpositive:
-        raise interpreter.fail(node.args[0], "a positive number below an exponent that is no number")
+        raise interpreter.fail(node.args[0], "a positive base for an exponent that is not a number")
     interpreter.within_nesting(base, node.args[0])
     interpreter.divide_by(base, node.args[0])
     interpreter.take_root(base, node.args[0])
@@ -221,7 +222,9 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             if close
             else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
-        expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
+        expected = f"a built-in function, or one declared as a function of t, instead of {name!r} ({known})"
+        if name in ("acot", "arccot"):
+            expected = TWO_CONVENTIONS
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)
     return _function_of_time(interpreter, node)

@@ -113,8 +113,8 @@ class TypedNotation:
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
     """Rewrite a condition in SymPy syntax, such as ``0 <= x <= pi and y > 0``, and return its text.
 
-    ``formula`` writes each formula, and ``signs`` maps signs to those to write. An unreadable condition stays
-    unchanged.
+    ``formula`` writes each formula. ``signs`` maps a sign in SymPy syntax to the sign to write, as ``==`` to ``=``.
+    An unreadable condition stays unchanged.
     """
     pieces = SIGN.split(source)
     try:

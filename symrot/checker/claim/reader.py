@@ -147,7 +147,7 @@ class _Text:
             tokens = [*clauses, *([end] if clauses else []), *tokens[: len(tokens) - 1 - len(clauses)], tokens[-1]]
         self.tokens, self.totals = _without_totals(tokens)
         if len(self.tokens) > MOST_PIECES:
-            raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
+            raise InputError(f"{prefix}expected at most {MOST_PIECES} numbers, names and signs, got {len(self.tokens)}")
 
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
@@ -307,7 +307,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` is one name where it is the left side of an equation.
+        """Return tokens in which ``ωp``, an ω with the index p, is one name where it is the left side of an equation.
 
         Anywhere else ``ωp`` is the product of ω and p.
         """

@@ -33,7 +33,7 @@ FIXED: Mapping[str, Shape] = {
 
 
 def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
-    """Return the shape of a formula, whose names have ``shapes`` (a scalar if absent)."""
+    """Return the shape (rows, columns) of a formula, None for a scalar; ``shapes`` are those of its names."""
     if node.kind == "name":
         return shapes.get(str(node.value))
     inner = [shape_of(child, shapes) for child in node.args]

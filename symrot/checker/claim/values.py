@@ -42,7 +42,7 @@ def decide_value(claim: Claim) -> Decision:
         return Decision("true")  # 4.905 rounds to 4.91 and, by another rule, to 4.90
     interval = enclosure(value)
     if interval is None:
-        return Decision("undecided", reason=f"no enclosure of {as_text(value)} is known here")
+        return Decision("undecided", reason=f"no interval is known that encloses {as_text(value)}")
     low, high = (iv.mpf(int(n.numerator)) / int(n.denominator) for n in (printed - unit / 2, printed + unit / 2))
     if low.b <= interval.a and interval.b <= high.a:
         return Decision("true")

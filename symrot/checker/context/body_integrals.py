@@ -28,10 +28,10 @@ SIGNS = {"minus": 1, "plus": -1}
 
 
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways of reading a claim as one about entries of the inertia tensor and integrals over the body.
+    """Yield the ways to read a claim as one about entries of the inertia tensor and integrals over the body.
 
-    There is none if the claim has another letter. Products of inertia have the minus sign in the first way, and none in
-    the second, unless words say which sign they have.
+    There is none if the claim has another letter. Unless words say which sign products of inertia have, they have
+    the minus sign in the first way, and none in the second.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -50,13 +50,13 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
 
 
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor with a symbol for the integral of each product of two coordinates."""
+    """Return an entry of the inertia tensor as a sum of symbols for the integrals of products of two coordinates."""
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
 
 
 def _product(powers: Sequence[int]) -> str:
-    """Return the coordinates of a product, each as often as its power: "xx" for x^2."""
+    """Return a product of coordinates as text, each as often as its power: "xx" for x^2."""
     return "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True))
 
 

@@ -1,4 +1,4 @@
-"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations of each subject."""
+"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations that hold there."""
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
@@ -13,7 +13,7 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the relations between rates, components, momenta and energies.
+    """Return the verdict that the relations between rates, components, momenta and energies imply for a claim.
 
     It is ``verdict`` if these relations do not decide the claim.
     """

@@ -1,7 +1,6 @@
-"""Claims whose words define products of inertia without the minus sign, judged with the sign that symrot uses.
+"""Claims whose context defines products of inertia without the minus sign; symrot's formulas have it.
 
-``I_xy`` without the minus sign is ``-I_xy`` with it, so that the claim with the signs of all products changed says the
-same in the convention of symrot.
+``I_xy`` without the minus sign is ``-I_xy`` with it. So the claim is judged after changing the sign of every product.
 """
 
 from dataclasses import replace
@@ -21,7 +20,7 @@ WITH_MINUS = next(quantity for quantity in QUANTITIES if quantity.sign == "minus
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return the claim that says the same about products of inertia with the minus sign."""
+    """Return an equivalent claim in which products of inertia are defined with the minus sign."""
     if claim.relation is None:
         return claim
     meanings = tuple(
@@ -33,7 +32,7 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Turn a verdict on the claim with changed signs into one on the claim itself; a note says so."""
+    """Turn the verdict on the claim with changed signs into the verdict on the original claim; a note says so."""
     repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
     return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
 
@@ -47,7 +46,7 @@ def _restored(repair: Repair) -> Repair | None:
 
 
 def _changed(relation: tuple[str, Node, Node]) -> tuple[str, Node, Node]:
-    """Return an equation with the other sign of each product of inertia, solved for the same quantity."""
+    """Return an equation with the opposite sign of each product of inertia, solved for the same quantity."""
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
     if any(map(_is_product, sides)):
@@ -60,7 +59,7 @@ def _negative(tree: Node) -> Node:
 
 
 def _is_product(tree: Node) -> bool:
-    """Return whether a tree is a product of inertia, by its name, as a function of time, or the rate of one."""
+    """Return whether a tree is a product of inertia by its name: the name, a function of time, or a rate."""
     if tree.kind == "call" and tree.value == "diff":
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]

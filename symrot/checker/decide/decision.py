@@ -20,7 +20,7 @@ from symrot.checker.decide.conditions import branch_requirements, requirements
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.hypotheses import Hypotheses
 from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
-from symrot.checker.decide.ranges import condition_texts, follow, range_text, with_domain
+from symrot.checker.decide.ranges import condition_texts, follow, positive_symbols, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError
@@ -109,6 +109,8 @@ def decide_equation(equation: Equation) -> Decision:
     try:
         with one_decision():
             decision = _decide(equation)
+            if decision.verdict == "undecided":
+                decision = _with_positive_symbols(equation, decision)
         return _without_needless(decision, equation) if decision.verdict == "conditional" else decision
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
@@ -116,6 +118,30 @@ def decide_equation(equation: Equation) -> Decision:
         if is_unordered(reason):
             return Decision("undecided", reason="two numbers in it are too close to tell which is larger")
         raise
+
+
+def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
+    """Return "true" for an open equation that is proven with the signs that its conditions give to its symbols.
+
+    Otherwise return the given decision. ``abs(x)`` is x in ``asech(x) == acosh(1/x)``, whose left side needs x > 0.
+    """
+    known = positive_symbols(decision.conditions)
+    if not known or equation.hypotheses:
+        return decision
+    left, right = (side.xreplace(known) for side in (equation.left, equation.right))
+    divisors, nonzero, radicands = (
+        tuple(formula.xreplace(known) for formula in formulas)
+        for formulas in (equation.divisors, equation.nonzero, equation.radicands)
+    )
+    try:
+        signed = _decide(Equation(left, right, (), divisors, nonzero, radicands))
+    except InputError:  # the signs exclude all points
+        return decision
+    if signed.verdict != "true":
+        return decision
+    symbols = {other: symbol for symbol, other in known.items()}
+    conditions = [condition.xreplace(symbols) for condition in signed.conditions]
+    return replace(signed, conditions=tuple(dict.fromkeys([*decision.conditions, *conditions])))
 
 
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
@@ -141,7 +167,7 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
     """Return whether an equation is true at each zero of a formula.
 
-    It is False too if the formula has several symbols, is no polynomial, or has an irrational zero.
+    Also return False if the formula has several symbols, is no polynomial, or has an irrational zero.
     """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
@@ -229,7 +255,7 @@ class _ClaimCase(Case):
     def lacks_evidence(self) -> bool:
         """Whether the stages so far leave the claim open.
 
-        They do if there is no counterexample and, without hypotheses, no condition on signs that suffices.
+        They do if no counterexample is known, and there are hypotheses or no condition on signs suffices.
         """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -382,6 +408,8 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
     if not bases or decision.verdict != "true":
         return decision
     text = range_text([(base, "> 0") for base in bases])
+    if not text:  # each base is proven to be positive
+        return decision
     required = Requirement("positive_base", text, signs=tuple(bases), strict=tuple(bases))
     return replace(decision, verdict="conditional", requires=(required,), conditions=(required, *decision.conditions))
 
@@ -561,7 +589,10 @@ def _obstacle(ring: FormulaRing) -> str:
         return f"too little is known here about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])
-        return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
+        return (
+            f"whether the sides are equal depends on the sign of {roots}, "
+            "and no point was found where they provably differ"
+        )
     if ring.hypotheses:
-        return f"none of {ATTEMPTS} points drawn obeys the hypotheses and shows a difference; no proof was found either"
+        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference; nor was a proof found"
     return "no rational point was found at which the sides differ, since an angle depends on other symbols"

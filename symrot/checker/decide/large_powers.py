@@ -152,7 +152,7 @@ def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
 
 
 def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
-    """Return a point with small numbers at which both sides have different values and all needs hold, or None."""
+    """Return a point with small numbers at which the sides have different values and all needs are met, or None."""
     leaves = leaves_of([left, right, *(need.formula for need in stated)])
     needs = [*needs_of([left, right]), *stated]
     for numbers in islice(product(VALUES, repeat=len(leaves)), MOST_POINTS):

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy
-from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, cos, cosh, exp, sin
+from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, Symbol, cos, cosh, exp, sin
 from sympy.core.relational import Relational
 from sympy.polys.polyerrors import PolynomialError
 
@@ -23,7 +23,7 @@ from symrot.exact.printing import as_text
 from symrot.exact.ring.roots import is_positive_where_defined
 from symrot.exact.size import pieces
 
-__all__ = ["condition_texts", "follow", "range_text", "with_domain"]
+__all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
 """A formula with more symbols and operations is written as it is."""
@@ -63,6 +63,16 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
     texts = _texts(_Conditions.of([*assumed, *_signs(conditions)]))
     stated = required[0].text.split(" and ") if assumed else []
     return (*(each.text for each in required), *(text for text in texts if text not in stated))
+
+
+def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
+    """Return the symbols that are positive or nonnegative under conditions, each with a symbol that is so by itself."""
+    signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
+    return {
+        symbol: Symbol(symbol.name, **{"positive" if other.is_positive else "nonnegative": True})
+        for symbol, other in signed.items()
+        if symbol.is_nonnegative is None
+    }
 
 
 def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
@@ -146,9 +156,29 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
                     return None
                 sign *= 1 if factor.is_positive or power % 2 == 0 else -1
                 continue
+            stronger = _stronger_term(factor)
+            if stronger != factor and (not power % 2 or all(each.is_positive for each in stronger.atoms(sympy.Number))):
+                for term in Mul.make_args(stronger):
+                    powers[term] = powers.get(term, 0) + direction * int(power)
+                continue
             for linear in _linear_factors(factor):
                 powers[linear] = powers.get(linear, 0) + direction * int(power)
     return sign, powers
+
+
+def _stronger_term(factor: Expr) -> Expr:
+    """Return the term of a sum of two that gives the sum its sign everywhere: x for ``x + sqrt(x^2 - 1)``.
+
+    Return other formulas unchanged. The square of this term is larger than that of the other one, unless both are zero.
+    """
+    if not factor.is_Add or len(factor.args) != 2 or not factor.has(Abs, sympy.Pow):
+        return factor
+    for first, second in (factor.args, factor.args[::-1]):
+        excess = (first**2 - second**2).expand().replace(Abs, lambda inner: sympy.sqrt(inner**2))
+        vanishing = excess.args[0] if excess.is_Pow and excess.is_nonnegative else None
+        if excess.is_positive or (vanishing and vanishing.is_Symbol and first.subs(vanishing, 0) == 0):
+            return first
+    return factor
 
 
 def _linear_factors(factor: Expr) -> tuple[Expr, ...]:
@@ -362,6 +392,8 @@ class _Conditions:
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
+        if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
+            return True
         own = self.ranges.get(bound.quantity)
         if own is None:
             if not isinstance(bound.quantity, sin | cos):
@@ -373,6 +405,14 @@ class _Conditions:
         if own.high == bound.root:
             own.high_closed = False
         return bool(own.sign_of(bound.root)[0])
+
+    def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
+        """Return whether a product such as ``(x - 1)*(x + 1) >= 0`` excludes a zero by excluding all between two."""
+        pair = [_bound(factor) for factor in factors]
+        if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
+            return False
+        outside = direction * pair[0].slope * pair[1].slope > 0
+        return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
         """Return whether the range of cos(u) says nothing new.

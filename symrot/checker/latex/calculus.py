@@ -1,12 +1,13 @@
 """Parsing functions, roots, fractions, derivatives and integrals in LaTeX."""
 
+from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
+from symrot.checker.typed.defined_functions import DEFINED, INVERSES, TWO_CONVENTIONS
 from symrot.latex import tree
 
 __all__ = ["DOTS", "CalculusPart"]
@@ -23,9 +24,11 @@ class CalculusPart(NamesPart):
         if raised := self.script("^"):
             power = self.argument(raised.inside)
             sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
-            is_inverse = power == negated(number(1)) and f"a{name}" in BUILT_IN
-            if is_inverse and not self.doubtful("inverse", function, self.end_of_next(), sure):
-                name, power = f"a{name}", None
+            is_inverse = power == negated(number(1))
+            if is_inverse and name == "cot":
+                raise self.fail(TWO_CONVENTIONS, function)
+            if is_inverse and name in INVERSES and not self.doubtful("inverse", function, self.end_of_next(), sure):
+                name, power = INVERSES[name], None
             elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):
                 raise self.fail(sure, function)
         opening = self.peek()
@@ -34,8 +37,14 @@ class CalculusPart(NamesPart):
         else:
             argument, own = self.loose_argument(function)
             power = own if power is None else power if own is None else product([power, own])
-        node = Node("call", name, (argument,))
+        node = DEFINED[name](argument) if name in DEFINED else Node("call", name, (argument,))
         return node if power is None else Node("power", None, (node, power))
+
+    def spelled(self, font: tree.Font) -> Node:
+        r"""Read a word in upright letters; return a function with its argument, ``\mathrm{sin}^2 x``, or a name."""
+        letters = font.inside.items if isinstance(font.inside, tree.Row) else (font.inside,)
+        command = f"\\{''.join(letter.text for letter in letters)}"
+        return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
         r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.

@@ -203,7 +203,7 @@ class NamesPart(SumsPart):
         r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
-            raise self.fail("eye(n) among the definitions for a unit matrix", inside)
+            raise self.fail("the name of a unit matrix that is defined as eye(n), not a bold number,", inside)
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node
@@ -221,12 +221,12 @@ class NamesPart(SumsPart):
         r"""Parse ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
-            raise self.fail("the terms of a sum with +", sign)
+            raise self.fail("the terms of the sum, joined by +,", sign)
         self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record a name as a vector or tensor whose components have no names yet; return its node, marked with MARK."""
+        """Record a name as a vector or tensor that needs names for its components; return its node, ending in MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -252,9 +252,9 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse, with ``read``, what is under a mark, and the subscript and primes after it:
+        r"""Parse what is under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``.
 
-        ``\dot{\mathbf{H}}_G``.
+        ``read`` parses it.
         """
         scripts = []
         while script := self.script("_") or self.script("'"):

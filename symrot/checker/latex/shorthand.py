@@ -66,7 +66,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms whose letters are such as c and s, by position; none if c or s also occurs alone."""
+    """Return the short forms that begin with a letter such as c or s, by position; none if c or s also occurs alone."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):

@@ -12,18 +12,19 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
 
 __all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
-    f"\\{command}": name
-    for command, name in (
-        *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
-        *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
+    f"\\{command}": ALIASES.get(command, command)
+    for command in (
+        "sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln", "tg", "ctg", "cosec", *DEFINED,
+        *(alias for alias, name in ALIASES.items() if name in DEFINED or name in ("asin", "acos", "atan")),
     )
-    if name in BUILT_IN
-}
+}  # fmt: skip
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
 LONGEST_MATRIX_NAME = 2
@@ -195,7 +196,7 @@ class SumsPart(Cursor):
                 raise self.fail("brackets around a repeated power", raised)
             is_function = node.kind == "call" and node.value in FUNCTIONS.values()
             if is_function and item.start not in self.short and self.flips is None:
-                raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
+                raise self.fail(f"the power directly after the function, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
         return node
 

@@ -184,7 +184,7 @@ class Cursor(ABC):
         if len(token.text) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", token.start)
         if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
-            raise self.fail(f"a power of ten within {LONGEST_NUMBER}", token.start)
+            raise self.fail(f"a power of ten with an exponent up to {LONGEST_NUMBER}", token.start)
         if exponent and self.token().kind == "name" and self.token().tight:
             raise self.fail(f"a product sign after the number {token.text}")
         return Node("number", Fraction(token.text), (), self.span(token.start))

@@ -29,10 +29,7 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index of the factor where the left side of a cross product starts:
-
-    R in ``R a × b``, else the last one.
-    """
+    """Return the index at which the left side of a cross product starts: the R of ``R a × b``, else the last factor."""
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 

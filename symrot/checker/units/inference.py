@@ -159,7 +159,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension in each entry, and return it; ``words`` is the message."""
+        """Require that two values have equal dimensions, and return them; ``words`` is the message if they differ."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:

@@ -50,8 +50,8 @@ def certify_step(
     printed = step_text(scene, step, order)
     if ranges and step == "dop853":
         raise InputError(
-            "step: expected rk4 or taylor for bounds on a box, got dop853, whose coefficients are rounded; without a box, "
-            "its formula is certified"
+            "step: expected rk4 or taylor for bounds on a box, got dop853, whose coefficients are rounded; without a "
+            "box, its formula is certified"
         )
     progress("proving ..")
     text = printed.certificate()

@@ -36,6 +36,8 @@ def test_a_rate_that_nothing_defines_is_no_identity(claim):
     ("diff(x*cos(phi(t))**2, t) == diff(x, t)*(sin(a)**2 + cos(a)**2)", "false"),
     ("d/dx (u v) = u dv/dx + v du/dx", "true"), ("diff(I*w, t) == diff(H, t) + m", "definition"),
     ("diff(x*diff(y, x), x) == x*diff(y, x)", "definition"), ("diff(r*w, t) == diff(p, t)", "definition"),
+    ("diff(x*cos(phi(t))**2, t) == diff(x/4, t)", "false"), ("diff(x*y, t) == diff(y*x, t)", "true"),
+    ("diff(Rz(phi(t)), t) == diff(Rz(b)*Rz(-b), t)", "false"), ("diff(I*w, t) == 0", "definition"),
     ("diff(y, x) == y", "definition"), ("diff(x*y, p) == diff(x, q)*y", "definition"),
 ])  # fmt: skip
 def test_rules_of_differentiation_are_decided_for_all_functions(claim, verdict):

@@ -204,6 +204,9 @@ HYPERBOLIC = (
     "coth x = 1/tanh x", "coth(x)**2 - csch(x)**2 == 1", "sech²x + tanh²x = 1", "sinh(asinh x) = x", "cosh(acosh(x)) == x",
     "atanh(tanh(x)) == x", "tanh(acoth x) = 1/x", "sech(asech(x)) == x", "csch(acsch x) = x", "tg x ctg x = 1",
     "d/dt (coth x) = -ẋ csch² x", "arcsinh x = ln(x + √(x² + 1))", "cosec x sin x = 1",
+    r"\coth x = \frac{1}{\tanh x}", r"\operatorname{sech}^2 x = 1 - \tanh^2 x", r"\mathrm{sin}^2 x + \cos^2 x = 1",
+    r"\operatorname{artanh} x = \frac12\ln\frac{1+x}{1-x}", r"\sinh^{-1} x = \ln(x + \sqrt{x^2+1})", "arsinh(x) = sinh^-1 x",
+    "sec^-1 x + csc^-1 x = π/2", "asec(x) == acos(1/x)", "asech(x) == acosh(1/x)",
 )  # fmt: skip
 
 
@@ -287,3 +290,12 @@ def test_a_greek_letter_with_an_index_is_a_name_where_it_is_the_whole_left_side(
 def test_tr_is_the_trace():
     assert symrot.check("R = [cos a, -sin a; sin a, cos a]\ntr R = 2 cos a").verdict == "true"
     assert symrot.check("tr == 2*x").verdict == "definition"
+
+
+@pytest.mark.parametrize(
+    "claim", ["tan^-1 x + cot^-1 x = π/2", r"\cot^{-1} x = \tan^{-1}(1/x)", "acot(x) == atan(1/x)"]
+)
+def test_the_inverse_of_cot_is_asked_about(claim):
+    """Books define it as atan(1/x) or as pi/2 - atan(x), which differ for x < 0."""
+    with pytest.raises(InputError, match="one of the two conventions for the inverse of cot"):
+        symrot.check(claim)
