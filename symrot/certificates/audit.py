@@ -70,10 +70,7 @@ def load_certificate(path: Path) -> Data:
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     if str(data.get("schema", "")).startswith("symrot.step/"):
-        raise CertificateError(
-            f"{path}: expected the certificate of a kernel, got that of a step; `{data.get('regenerate')} -o DIR` "
-            "proves it again"
-        )
+        raise CertificateError(f"{path}: expected the certificate of a kernel, got one of a step")
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
@@ -93,7 +90,7 @@ def load_certificate(path: Path) -> Data:
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("expected different names in an object, got one name twice")
+        raise ValueError("expected each name at most once in a JSON object, got a name twice")
     return data
 
 
@@ -120,7 +117,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     data = load_certificate(path)
     for file in data["files"]:
         if not file.startswith("../") and not (path.parent / file).is_file():
-            raise CertificateError(f"{path}: expected its file {file} in the same folder, and it is not there")
+            raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
     try:
         findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_compared(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
@@ -153,7 +150,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     _compare(path, data, statement)
     return [
         *findings,
-        "formulas, laws, domain, units, flags and assumptions are those that symrot derives, and proves exactly",
+        "formulas, laws, domain, units, flags and assumptions equal those that symrot derives and proves exactly",
     ]
 
 
@@ -175,9 +172,10 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _compared(data: Data) -> list[str]:
-    """Return a list with a sentence that verdicts on object code were not checked; empty if there are no such verdicts.
+    """Return a list of one sentence, which says that the certificate's verdicts on object code were not checked.
 
-    A verdict on object code holds only for the machine where it was made.
+    The list is empty if the certificate has no verdicts on object code. A verdict holds only for the machine where
+    it was made.
     """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
@@ -203,17 +201,17 @@ def _bounds(path: Path, data: Data, source: str) -> str:
             )
         return "no bounds of rounding errors" + (f": {own}" if own else "")
     if json.dumps(section) == json.dumps(own):
-        return "bounds of rounding errors are those that symrot knows of these operations on the kernel's own box"
+        return "bounds of rounding errors equal symrot's bounds of these operations on the kernel's own box"
     region = library_region(data["kernel"], source) if own is not None else None
     if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
         raise CertificateError(
-            f"{path}: expected bounds of rounding errors on the region of the kernel, got another region"
+            f"{path}: expected bounds of rounding errors under the kernel's own restrictions of inputs, got others"
         )
     kernels = list(operations_of(data, source).values())
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)
     check_bounds(section, double, single)
-    return "bounds of rounding errors on a box of your own are those that symrot finds there"
+    return "bounds of rounding errors equal those that symrot computes for these operations on the certificate's box"
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:

@@ -371,7 +371,8 @@ def _doctor(options: Namespace) -> int:
 
 def _run_arguments(parser: ArgumentParser) -> None:
     cli_scenes.scene_options(parser)
-    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--method", default="auto", metavar="NAME",
+                        help="method that computes the motion: auto, exact, taylor, dop853 or scipy:NAME")  # fmt: skip
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument(
         "--state",

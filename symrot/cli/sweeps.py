@@ -163,7 +163,8 @@ def _arguments(parser: ArgumentParser) -> None:
         help="'statistics' writes only the statistics, not each trajectory (default: all)",
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write FILE.zarr or FILE.parquet")
-    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--method", default="auto", metavar="NAME",
+                        help="method that computes the motions: auto, exact, taylor, dop853 or scipy:NAME")  # fmt: skip
     parser.add_argument("--tolerance", metavar="X", help="error to aim for (default: the scene's own)")
     parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (default: one per core)")
     parser.add_argument(
@@ -171,7 +172,12 @@ def _arguments(parser: ArgumentParser) -> None:
         metavar="ADDRESS",
         help="address of a Dask scheduler whose workers to use instead, such as tcp://host:8786",
     )
-    parser.add_argument("--chunk", type=int, metavar="N", help="trajectories in a chunk; does not change the results")
+    parser.add_argument(
+        "--chunk",
+        type=int,
+        metavar="N",
+        help="trajectories that are computed and written at once; does not change the results",
+    )
     json_option(parser)
 
 

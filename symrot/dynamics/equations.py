@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """Symbols of a motion whose attitude is given by Euler angles, from which its rotation matrix is computed."""
+    """The symbols of a motion whose attitude is given by Euler angles instead of a quaternion."""
 
     sequence: str
 

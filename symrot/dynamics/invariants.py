@@ -89,7 +89,7 @@ def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Ite
 
 def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) -> str:
     if holds and name.startswith("spin"):
-        return "equal moments, and no torque about that axis"
+        return "the moments about the other axes are equal, and no torque acts about this axis"
     if not kinds:
         return "no torque acts"
     acting = _listed(kinds)
@@ -103,7 +103,7 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
         return "the gravity gradient is constant in axes that rotate with the orbit"
     if name == "angular momentum":
         return f"{acting} changes only the direction of the angular momentum in the body"
-    return f"{acting} has no moment about that axis of space"
+    return f"{acting} has no moment about this axis, fixed in space"
 
 
 def _listed(kinds: Sequence[str]) -> str:

@@ -34,22 +34,25 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a factor to be zero: all ``numerators``, polynomials of another ring, are zero."""
+    """A sufficient condition for a polynomial to be zero: all ``numerators``, polynomials of ``ring``, are zero."""
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero, by the relations of the ring or because one factor is zero."""
+    """Return whether a polynomial of the ring is proven to be zero, such as the numerator of left - right.
+
+    The proof uses the relations of the ring, or shows that one factor of the polynomial is zero.
+    """
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that a numerator is zero; return the further rings of the proof, or None if no proof was found.
+    """Prove that a polynomial of the ring is zero, such as the numerator of left - right.
 
-    The tuple is empty if the relations of ``ring`` suffice. The proof holds where no divisor of the further rings is
-    zero.
+    Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
+    relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -64,7 +67,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which suffices to make a factor of a numerator zero.
+    """Yield conditions, each of which suffices to make a factor of a polynomial (``numerator``) zero.
 
     With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
@@ -95,7 +98,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof, by ``rings``, that an expression is zero under conditions.
+    """A proof, computed in the polynomial rings ``rings``, that an expression is zero under two kinds of conditions.
 
     The formulas ``nonnegative`` must be nonnegative, and the formulas ``positive`` positive.
     """
@@ -106,8 +109,9 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof of where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
+    """Return a proof that a factor ``asin(S) - w`` of a polynomial is zero for certain w, if ``S = sin w`` is proven.
 
+    Factors with acos, atan and atan2 are proven likewise; the result is None if there is no factor of this form.
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
     between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """
@@ -178,7 +182,7 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if ``y cos w = x sin w`` is proven; otherwise None.
 
     The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
@@ -198,7 +202,7 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None.
 
     For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
     positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in

@@ -1,4 +1,4 @@
-"""The page of a derivation as a lesson: what comes before its steps and after them."""
+"""The page of a derivation as a lesson: the paragraphs before its steps and after them."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -15,7 +15,7 @@ __all__ = ["taught"]
 
 
 def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
-    """Return a page with its lesson: question, figures and prerequisites before it; numbers, mistake and links after.
+    """Return a page with its lesson: question, figures, prerequisites in front; numbers, mistake, links at the end.
 
     Examples
     --------

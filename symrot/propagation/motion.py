@@ -179,7 +179,7 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy of the setup whose clock shows 0 at the start."""
+        """A copy of the setup whose clock shows 0 at the start, so that times near the start keep all digits."""
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)

@@ -163,7 +163,7 @@ def _rows(value: Any, where: str) -> Matrix:
 def refuse_two(attitude: Any, quaternion: Any) -> None:
     """Raise InputError if a call gives both an attitude and a quaternion, that is, if neither argument is None."""
     if attitude is not None and quaternion is not None:
-        raise InputError(f"attitude: expected attitude or quaternion, got both, {show(attitude)}")
+        raise InputError(f"attitude: expected either attitude or quaternion, got both (attitude is {show(attitude)})")
 
 
 def read_sequence(value: Any, where: str) -> str:

@@ -145,7 +145,10 @@ def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
 
 
 def _free_structure(scene: Scene) -> Any:
-    """Return the structure of a scene in which every constant may change; principal axes of the body stay so."""
+    """Return the structure of a scene in which every constant may change.
+
+    If the axes of the body are principal axes, the structure has no products of inertia.
+    """
     structure = general_structure(scene)
     if scene.body.principal.given_axes:
         return replace(structure, inertia=PrincipalInertia("ABC"))

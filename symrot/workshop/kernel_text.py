@@ -50,7 +50,7 @@ Bounds = Mapping[str, Any]
 
 
 class KernelText(ABC):
-    """The texts of one kernel; an argument ``bounds`` is the one of :func:`symrot.emit`."""
+    """The texts of one kernel; :func:`symrot.emit` explains the argument ``bounds`` of its methods."""
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
@@ -79,7 +79,7 @@ class KernelText(ABC):
         """Return the kernel with its texts, as the object from which its certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the section ``rounding`` of the certificate, or None."""
+        """Return the section ``rounding`` of the certificate, which states bounds of rounding errors, or None."""
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:

@@ -60,7 +60,7 @@ def step_method(name: str, order: int | None = None) -> Method:
     if name not in STEPS:
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order with the step taylor only, got {order} with {name}")
+        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
         raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
     return STEPS[name](ORDER if order is None else order)
@@ -164,8 +164,8 @@ class StepText(KernelText):
         """The step with its texts, as the object from which its certificate is made."""
         description = self._description("c")
         return StepUnderTest(
-            self.name, description.title, description.command, self._rates_program, self.method, self._program,
-            self.c_files(),
+            self.name, description.title, description.command, self._rates_program, self.method,
+            tuple(self.rates.inputs.parameters), self.c_files(),
         )  # fmt: skip
 
     def certificate(self, bounds: Bounds | None = None) -> str:
@@ -174,7 +174,7 @@ class StepText(KernelText):
 
     @cached_property
     def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
-        """States and sizes with the states after the step, computed with 40 digits from the formula of the method."""
+        """Test vectors: (state, step size, state after the step), computed with 40 digits from the method's formula."""
         import mpmath
 
         states = [name for name, *_ in self._rates_program.signature.argument("y").components]

@@ -532,5 +532,5 @@ def test_a_kernel_without_a_textbook_formula_is_refused_in_a_sentence(name, caps
 
 def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():
     assert [len({*check.claims(group)}) for group in check.LIMITS] == [40, 40, 20]
-    with pytest.raises(InputError, match="one of typical, naming, conditional; got 'typcal' .*did you mean 'typical'"):
+    with pytest.raises(InputError, match=r"one of typical, naming, conditional; got 'typcal' .*did you mean 'typical'"):
         check.claims("typcal")

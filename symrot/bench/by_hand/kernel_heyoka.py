@@ -1,4 +1,4 @@
-"""Addresses of heyoka's compiled functions, so that its machine code runs in the same loops as other tools' code."""
+"""Addresses of heyoka's compiled functions, so that its machine code can be timed in the same loops as other code."""
 
 import ctypes
 import subprocess
@@ -28,7 +28,7 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's code: for one sample, and for one or ``LANES`` samples of a batch.
+    """Return the addresses of heyoka's functions for a kernel: for one sample, and for a batch (1 or ``LANES``).
 
     heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 

@@ -67,9 +67,10 @@ def _on_letters(
 
 
 def is_rule(claim: Claim) -> bool:
-    """Return whether both sides have derivatives, one of a longer formula, and one side has all letters of the other.
+    """Return whether a claim is a rule of differentiation: both sides have derivatives, one of them of a whole formula.
 
-    ``diff(y, x) == y`` is an equation for y and no rule, and so is ``diff(x, t) == diff(y, t)``.
+    Moreover, one side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
+    so is ``diff(x, t) == diff(y, t)``.
     """
     assert claim.relation is not None
     nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]

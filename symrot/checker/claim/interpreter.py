@@ -59,7 +59,7 @@ class Interpreter(Scope):
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:
             if is_unordered(reason):
-                raise self.fail(node, "numbers that can be ordered by their digits") from None
+                raise self.fail(node, "numbers of which it can be told which is larger") from None
             raise
 
 
@@ -176,7 +176,7 @@ def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponen
     interpreter.shape(base, node.args[0])
     interpreter.within_nesting(exponent, node.args[1])
     if base.is_nonpositive:
-        raise interpreter.fail(node.args[0], "a positive base for an exponent that is not a number")
+        raise interpreter.fail(node.args[0], "a positive number as the base of a power whose exponent is not a number")
     interpreter.within_nesting(base, node.args[0])
     interpreter.divide_by(base, node.args[0])
     interpreter.take_root(base, node.args[0])

@@ -167,7 +167,7 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
     """Return whether an equation is true at each zero of a formula.
 
-    It is False too if the formula has several symbols, is no polynomial, or has an irrational zero.
+    Also return False if the formula has several symbols, is no polynomial, or has an irrational zero.
     """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
@@ -255,7 +255,7 @@ class _ClaimCase(Case):
     def lacks_evidence(self) -> bool:
         """Whether the stages so far leave the claim open.
 
-        They do if there is no counterexample and, without hypotheses, no condition on signs that suffices.
+        They do if no counterexample is known, and there are hypotheses or no condition on signs suffices.
         """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 

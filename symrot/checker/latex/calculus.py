@@ -8,6 +8,7 @@ from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
+from symrot.checker.typed.densities import over_mass
 from symrot.latex import tree
 
 __all__ = ["DOTS", "CalculusPart"]
@@ -198,8 +199,11 @@ class CalculusPart(NamesPart):
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
         self.integrals -= 1
-        if not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        if self.differential() and self.peek(1).text in ("V", "A", "s") and (mass := over_mass(integrand)) is not None:
+            self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
+            integrand = mass
+        elif not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, dm, or a density and dV for an integral over a body")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 

@@ -148,7 +148,7 @@ class Cursor(cursor.Cursor):
                 expected = instead if piece.kind == "left" else alone
                 raise complaint(source, where, source.index(piece.text, piece.start), expected)
         if len(pieces) > MOST_PIECES:
-            raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+            raise InputError(f"{place}expected at most {MOST_PIECES} numbers, names and signs, got {len(pieces)}")
         self.frames = _frames(pieces)
         self.short = shorthands(pieces, {*names.symbols, *names.functions, *names.matrices, *names.others})
         if self.short and flips is not None and self.doubtful("shorthand", pieces[0], pieces[0].start + 1, ""):

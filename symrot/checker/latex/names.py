@@ -13,11 +13,13 @@ from symrot.latex import tree
 
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
-OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part"}
+OPERATORS = {
+    "\\arg": "arg", "\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part",
+}  # fmt: skip
 SPELLED = {
     "tr": "trace", "Tr": "trace", "Det": "det", "Diag": "diag", "Atan2": "atan2", "ATAN2": "atan2", "arctan2": "atan2",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "vers": "vers", "adj": "adjugate",
-    "Re": "real_part", "Im": "imaginary_part",
+    "Re": "real_part", "Im": "imaginary_part", "arg": "arg",
     **{name: name for name in BUILT_IN},
 }  # fmt: skip
 """Name in upright letters -> the function that it means."""
@@ -203,7 +205,7 @@ class NamesPart(SumsPart):
         r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
-            raise self.fail("eye(n) among the definitions for a unit matrix", inside)
+            raise self.fail("the name of a unit matrix that is defined as eye(n), not a bold number,", inside)
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node

@@ -1,7 +1,7 @@
 """Renamings of the symbols of a known formula that respect the axes and angles in the names of the symbols.
 
-``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` is Euler's equation if I_2 is renamed I_3 and I_3 is renamed I_2, but no
-reader means that: omega_2 and omega_3 keep their axes.
+``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` becomes Euler's equation by exchanging I_2 and I_3, but no author means
+that: omega_2 and omega_3 keep their axes.
 """
 
 import re

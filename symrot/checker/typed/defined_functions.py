@@ -1,4 +1,4 @@
-"""Functions that are defined by other functions: coth, sech, csch and their inverses.
+"""Functions that are defined by other functions: coth, sech, csch, their inverses, and arg.
 
 The inverses of cot, sec and csc are not among them, since books disagree on their values.
 """
@@ -39,6 +39,7 @@ DEFINED: Mapping[str, Callable[[Node], Node]] = {
     "atanh": lambda x: _half_log(sum_of([ONE, x]), sum_of([ONE, negated(x)])),
     "acoth": lambda x: _half_log(sum_of([x, ONE]), sum_of([x, negated(ONE)])),
     "asech": lambda x: _log(_over(sum_of([ONE, _root(sum_of([ONE, negated(_square(x))]))]), x)),
+    "arg": lambda x: Node("call", "atan2", (Node("call", "imaginary_part", (x,)), Node("call", "real_part", (x,)))),
     "acsch": lambda x: _log(sum_of([_over(ONE, x), _root(sum_of([_over(ONE, _square(x)), ONE]))])),
 }
 """Function of one scalar -> the formula that it is, with the principal values of the inverses."""

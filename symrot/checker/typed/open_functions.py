@@ -194,6 +194,9 @@ class OpenFunctionsPart(Cursor):
         if not name and self.token(place).text != "/":
             name, place = self.tight_name(place)
         slash, (variable, place) = self.token(place).text, self.differential(place + 1)
+        mark = self.token(place)
+        order_of_rate = int(mark.text) if mark.kind == "dots" else len(mark.text) if mark.kind == "prime" else 0
+        place += bool(order_of_rate)  # ∂T/∂θ'
         below, place = self.order_at(place)
         if slash != "/" or not variable or variable == "t" or order != below or name == variable:
             return None
@@ -202,7 +205,11 @@ class OpenFunctionsPart(Cursor):
             return None
         self.plain = True
         self.index += place
-        variables = [Node("name", variable)] * order
+        by = Node("name", variable)
+        if order_of_rate:
+            self.timed.add(variable)
+            by = Node("call", "diff", (Node("call", variable, (TIME,)), *[TIME] * order_of_rate))
+        variables = [by] * order
         if name:
             return Node("call", "diff", (Node("name", name), *variables), self.span(token.start))
         self.deeper()

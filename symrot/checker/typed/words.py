@@ -28,7 +28,7 @@ SINGLE_ARGUMENT = (
     "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
     "acsch", "arsinh", "arcosh", "artanh", "arcoth", "arsech", "arcsch",
     "tg", "ctg", "cosec",
-    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "tr", "inverse", "transpose",
+    "exp", "log", "ln", "sqrt", "abs", "arg", "det", "trace", "tr", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
 

@@ -64,8 +64,8 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86.
 
-    An attitude needs no more digits. Because of this rounding, double-double arithmetic on arrays of attitudes gives
-    the same doubles.
+    An attitude needs no more digits. Since the low parts are rounded to a coarser grid, arithmetic on arrays
+    (:mod:`symrot.closed_form.batches`) can compute exactly the same doubles.
     """
     result: list[float] = []
     for value in values:

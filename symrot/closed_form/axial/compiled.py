@@ -191,7 +191,7 @@ class Constants:
         rates : 3 Fractions
             Angular velocity at the start, rad/s.
         attitude : 2 lists of 4 floats
-            Quaternions P and Q, as pairs of doubles: the attitude is P cos(angle/2) + Q sin(angle/2).
+            Quaternions P and Q: the attitude is P cos(angle/2) + Q sin(angle/2).
         """
         evaluate, record = functions()
         one, other = rates[self.axis - 2], rates[self.axis - 1]
@@ -206,7 +206,8 @@ class Constants:
     def shapes(self, one: Any, other: Any) -> list[Any]:
         """Return the entries of the matrix `omega` of axial.h, row by row, for the initial transverse rates.
 
-        The matrix maps factors of the transverse rates and the axial rate to body components of the angular velocity.
+        The matrix maps three numbers to the body components of the angular velocity: the damped cosine and sine of the
+        angle by which the transverse angular velocity has rotated in the body, and the axial rate.
         """
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0

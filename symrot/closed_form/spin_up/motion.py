@@ -89,7 +89,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute the samples with too many revolutions for double-double numbers, in integers; fill the arrays."""
+        """Compute in integers all samples with too many revolutions for double-double numbers; fill the arrays."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")

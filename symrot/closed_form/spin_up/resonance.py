@@ -82,7 +82,7 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at x as a quaternion in fixed-point integers, with an error of 1e-30."""
+        """Return the attitude at the scaled time x as a quaternion of fixed-point integers, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         sign = -1 if x < 0 else 1

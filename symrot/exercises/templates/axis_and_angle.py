@@ -23,7 +23,7 @@ def _axis(random: Random) -> tuple[Matrix, str]:
 
 
 def rotated_point(random: Random) -> Problem:
-    """Return a problem that asks for a coordinate of a point after a rotation about an oblique axis."""
+    """Return a problem that asks for a coordinate of a point after a rotation about an inclined axis."""
     axis, text = _axis(random)
     point = Matrix((x, y, z))
     row = random.randrange(3)
@@ -60,7 +60,7 @@ def trace_of_rotation(random: Random) -> Problem:
 
 
 def matrix_of_axis_angle(random: Random) -> Problem:
-    """Return a problem that asks for an entry of the matrix of a rotation about an oblique axis."""
+    """Return a problem that asks for an entry of the matrix of a rotation about an inclined axis."""
     axis, text = _axis(random)
     row, column = random.choice(((0, 1), (1, 2), (2, 0), (0, 2), (1, 0), (2, 1)))
     entry = dcm_of_axis_angle(axis, alpha)[row, column]

@@ -21,7 +21,7 @@ CONTACT = r"Z_S(\omega_S - \omega_C) + Z_R(\omega_R - \omega_C)"
 
 
 def _contact() -> Expr:
-    """Return an expression in the rates of sun, ring and carrier that is zero because teeth in contact move together.
+    """Return an expression in the rates of sun, ring and carrier; it is zero if teeth in contact have equal velocities.
 
     The rate of the planet is eliminated.
     """

@@ -45,7 +45,7 @@ def _condition() -> Expr:
 
 
 def _is_possible(values: Mapping[Symbol, Expr]) -> bool:
-    """Return whether a body can have these moments; the transverse moment A about the tip contains ``m h^2``."""
+    """Return whether a body can have the chosen moments about its tip, where A contains ``m h^2`` (parallel axes)."""
     across = values.get(A, oo)
     return bool(across > values.get(m, 0) * values.get(h, 0) ** 2 + values.get(C, 0) / 2)
 

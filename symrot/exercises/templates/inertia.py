@@ -20,7 +20,7 @@ RADIUS = quantity(R, RADII, "mm", "radius")
 
 
 def _about(body: Solid, point: tuple[Expr, ...], axis: int, distance: Expr) -> tuple[Expr, tuple[Line, ...]]:
-    """Return a body's moment about an axis through a point, and the solution lines of the parallel axis theorem."""
+    """Return a body's moment of inertia about an axis through a point, and the solution lines that derive it."""
     moment = body.inertia_about(point)[axis, axis]
     law = "The parallel axis theorem, from the centre of mass to the axis."
     return moment, chain("I_O", law, moment, written_sum(body.inertia[axis, axis], m * distance**2), moment, ADD)

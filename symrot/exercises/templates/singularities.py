@@ -55,7 +55,7 @@ def growth_near_lock(random: Random) -> Problem:
 
 
 def only_sum_of_angles(random: Random) -> Problem:
-    """Return a problem on gimbal lock that asks for a matrix entry: only the sum of two angles occurs in it."""
+    """Return a problem that asks for a matrix entry at gimbal lock, where it depends only on the sum of two angles."""
     matrix = dcm("ZXZ", (phi, Integer(0), psi))
     entry = cos(phi + psi)
     return Problem(
@@ -77,7 +77,7 @@ def only_sum_of_angles(random: Random) -> Problem:
 
 
 def angle_of_lock(random: Random) -> Problem:
-    """Return a problem that asks for the smallest nonnegative second angle at which a sequence locks."""
+    """Return a problem that asks for the smallest second angle, zero or more, at which a sequence is in gimbal lock."""
     sequence = random.choice(SEQUENCES)
     determinant_of = normal_form(rate_jacobian(sequence).determinant)
     lock = min((root for root in solve(determinant_of, theta) if root >= 0), key=lambda root: root)

@@ -78,7 +78,8 @@ def _nested(terms: int) -> Floats:
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
     """Return the Chebyshev points on [-1, 1] and two conversion matrices.
 
-    The first matrix converts values at the points to Chebyshev coefficients, the second one these to powers.
+    The first matrix converts values at the points to coefficients of Chebyshev polynomials; the second one converts
+    these to coefficients of powers.
     """
     from numpy.polynomial import chebyshev
 

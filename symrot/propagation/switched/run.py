@@ -485,7 +485,7 @@ class SwitchedRun(RunState):
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
                 self.t,
-                f"the motion slides along {self._names_of_held()}, but nearby motions move away from it",
+                f"the motion slides along {self._names_of_held()}, but nearby motions lead away from it",
                 self.end,
             )
         self.left.add((mode, self.modes[mode]))

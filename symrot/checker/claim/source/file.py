@@ -78,7 +78,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
         raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
     tables = table.get("claim")
     if not isinstance(tables, list) or not tables or not all(isinstance(entry, dict) for entry in tables):
-        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'no tables'}")
+        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'other values'}")
     if len(tables) > MOST_CLAIMS:
         raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(tables)}")
     entries: list[Claim | Refusal] = []
@@ -144,7 +144,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
             raise InputError(f"{place}: expected the key printed_value together with the key value, got value alone")
         if others:
             raise InputError(
-                f"{place}: alternatives: expected other readings of a claim, got them together with a value"
+                f"{place}: alternatives: expected this key together with claim or latex, got it together with value"
             )
         sources["value"] = entry["value"]
         value = read_expression(entry["value"], f"{place}: value", own)
