@@ -17,12 +17,13 @@ from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 
-__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "unfinished", "verdict_of_decision"]
+__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision"]
 
 MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
+ENDED = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
 WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
 
 
@@ -70,11 +71,15 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             late = verdict_of_decision(unfinished(), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            note = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
-            verdict = replace(verdict, notes=(*verdict.notes, note))
+            verdict = replace(verdict, notes=(*verdict.notes, ENDED))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
+
+
+def is_unfinished(verdict: Verdict) -> bool:
+    """Return whether the processor time for a claim was used up before all was tried."""
+    return verdict.reason == unfinished().reason or ENDED in verdict.notes
 
 
 def unfinished() -> Decision:

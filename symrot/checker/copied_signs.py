@@ -32,7 +32,7 @@ def with_plain_signs(source: str) -> str:
     """
     text = _THOUSANDS.sub(lambda match: match[0].replace(",", ""), source)
     text = _ROUNDED.sub("=", text)
-    if "\\" not in text and "$" not in text and "{" in text and _FUNCTION.search(text):
+    if "\\" not in text and "$" not in text and "{" in text and (_FUNCTION.search(text) or "∫" in text):
         text = _SUBSCRIPT.sub(r"_\1", text).replace("{", "(").replace("}", ")")
     return _with_definitions_first(text) if "\\" in text or "{" in text else text
 

@@ -7,6 +7,7 @@ several lines one by one; a line that gives a name to a formula defines the name
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
@@ -17,11 +18,12 @@ from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
+from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
@@ -48,6 +50,7 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
+ZERO = Node("number", Fraction(0))
 
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
@@ -105,7 +108,7 @@ def verdict_on_readings(
     refusal: InputError | None = None
     late = False
     for reading in readings:
-        late = late or sum(verdict.seconds for _, verdict in verdicts) > MOST_SECONDS
+        late = any(is_unfinished(verdict) for _, verdict in verdicts)
         if late:
             break
         try:
@@ -135,7 +138,7 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
+        notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
@@ -257,7 +260,7 @@ def verdict_on_reading(
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
-    parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
+    parts = [(claim, _on_claim(claim, notation, repair, reading.plain)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
     if several and verdict.verdict == "conditional":
@@ -300,10 +303,13 @@ def _differs(echo: str, source: str) -> bool:
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
-def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
+def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
+    """Return the verdict on one equation; in a ``plain`` text, which is not SymPy's, = may mean a condition."""
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
+    verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
@@ -314,8 +320,39 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
     )
-    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict))
+    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict), *_on_zero_powers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on ``L = T - V`` after lines in which L is a length: L is then the name of two quantities."""
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
+    if left.kind != "name" or not others or name in dict(claim.define) or left in [node for _, node in walk(right)]:
+        return verdict
+    define = tuple((own, _with_name(tree, name, f"{name}_1")) for own, tree in claim.define)
+    other = check_claim(replace(claim, define=define), repair=False)
+    if other.verdict == "false":
+        return verdict
+    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
+    return replace(other, notes=(*other.notes, note))
+
+
+def _with_name(tree: Node, old: str, new: str) -> Node:
+    """Return a tree with another name in place of one name."""
+    if tree.kind == "name" and tree.value == old:
+        return replace(tree, value=new)
+    return replace(tree, args=tuple(_with_name(part, old, new) for part in tree.args))
+
+
+def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
+    """Return a note on the convention by which a true claim with ``x^0`` holds for x = 0 too."""
+    sides = claim.relation[1:] if claim.relation else ()
+    nodes = [node for side in sides for _, node in walk(side)]
+    powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == ZERO]
+    is_open = any(base.kind != "number" or not base.value for base in powers)
+    return ("0^0 is read as 1, by the convention of algebra",) if is_open and verdict.verdict == "true" else ()
 
 
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:

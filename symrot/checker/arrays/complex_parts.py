@@ -301,6 +301,11 @@ class _Splitter:
         ((a, b),) = inner
         return a, negated(b)
 
+    def angle(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        if any(not _is_zero(b) for _, b in inner):
+            raise self.fail(node, "real numbers in atan2")
+        return Node("call", "atan2", tuple(a for a, _ in inner)), ZERO
+
     def sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
         ((a, b),) = inner
         return _of(_call("sin", a), _call("cosh", b)), _of(_call("cos", a), _call("sinh", b))
@@ -326,6 +331,7 @@ class _Splitter:
     rules: ClassVar[Mapping[str, Callable[["_Splitter", Node, Sequence[Parts]], Parts]]] = {
         "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute,
         "real_part": real_part, "imaginary_part": imaginary_part, "conjugate": conjugate, "sin": sine,
+        "atan2": angle,
         "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
     """Kind of a formula, or the function that it calls -> the rule for its parts."""

@@ -85,7 +85,9 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
             name = _name_of_array(first)
-            if name[:1].isupper() and name in vectors and not is_tensor(name) and _is_array(second, vectors):
+            is_vector = Node("call", "dot", (first, second)) in nodes  # F·d = F d cos θ
+            is_capital = name[:1].isupper() and name in vectors and not is_tensor(name)
+            if is_capital and _is_array(second, vectors) and not is_vector:
                 rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
                 matrices[name] = name in rates
     return matrices

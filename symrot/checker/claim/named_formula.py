@@ -18,13 +18,15 @@ from symrot.exact import normal_form
 from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["NamedFormula", "Solve", "named_formula", "open_formula", "related_formula"]
+__all__ = [
+    "NamedFormula", "Solve", "is_name_or_rate", "named_formula", "open_formula", "related_formula", "solution",
+]  # fmt: skip
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
 """Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
 
-INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
+INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
 """Function of a quantity -> the function that solves for the quantity."""
 
 
@@ -151,8 +153,8 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return None
     if apart:
         for side, formula in ((left, right), (right, left)):
-            if (solution := _solution(side)) is not None:
-                (name, is_rate), solve = solution
+            if (inverted := solution(side)) is not None:
+                (name, is_rate), solve = inverted
                 return NamedFormula(name, side, formula, is_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
@@ -331,6 +333,11 @@ def _is_rate(tree: Node) -> bool:
     return tree.kind == "call" and tree.value == "diff" and _is_name(tree.args[0]) and {*times} == {"t"}
 
 
+def is_name_or_rate(tree: Node) -> bool:
+    """Return whether a tree is a name, a function of time such as ``theta(t)``, or a time derivative of one."""
+    return _is_name(tree) or _is_rate(tree)
+
+
 def _quantities(tree: Node) -> set[tuple[str, bool]]:
     """Return the names in a tree as pairs (name, whether its rate is meant); x and dx/dt are two quantities."""
     if _is_rate(tree):
@@ -340,7 +347,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
     return {quantity for part in tree.args for quantity in _quantities(part)}
 
 
-def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
+def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
     """Return the only quantity of a side, such as k in 2*k^2, and a function that solves for it; None without one."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
@@ -358,6 +365,9 @@ def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
             side = own[0]
         elif side.kind == "power" and side.args[1].kind == "number" and side.args[1].value:
             steps.append(partial(_to_power, 1 / side.args[1].value))
+            side = side.args[0]
+        elif side.kind == "inv":
+            steps.append(partial(_to_power, Fraction(-1)))
             side = side.args[0]
         elif side.kind == "call" and side.value == "sqrt":
             steps.append(partial(_to_power, Fraction(2)))

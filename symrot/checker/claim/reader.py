@@ -15,7 +15,15 @@ from typing import Any
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number
 from symrot.checker.typed.copied_text import without_surroundings
-from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
+from symrot.checker.typed.cursor import (
+    DEEPEST_NESTING,
+    TIME,
+    Doubt,
+    Vocabulary,
+    is_cross_letter,
+    is_mass_before_vector,
+    is_usual_vector,
+)
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
 from symrot.checker.typed.words import (
@@ -264,8 +272,10 @@ class _Text:
 
     @property
     def differentials(self) -> set[str]:
-        """The names that start with d and occur as in ``dy/dx`` or ``d/dx (..)``: dy and dx."""
-        words = set()
+        """The names that start with d and occur as in ``dy/dx``, ``d/dx (..)``, ``∂y`` or ``∫ y dx``: dy and dx."""
+        words = {token.text for token in self.tokens if self.source[token.start : token.start + 1] == "∂"}
+        if any(token.text == "∫" for token in self.tokens):
+            words |= {token.text for token in self.tokens if re.fullmatch("d[A-Za-z]", token.text)}
         for n, slash in enumerate(self.tokens):
             above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
             is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")
@@ -407,16 +417,18 @@ def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
 
 def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
     """Yield the names that no bracket follows. A letter x that is the sign of a cross product is no name."""
-    for before, token, after in zip((None, *tokens), tokens, tokens[1:], strict=False):
-        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, vectors):
+    padded = [*tokens, tokens[-1]]
+    for before, token, after, last in zip((None, *tokens), tokens, tokens[1:], padded[2:], strict=False):
+        own = last if is_mass_before_vector(after, last) else after
+        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, own, vectors):
             yield token.text
 
 
-def _is_cross(before: Token | None, token: Token, after: Token, vectors: Collection[str]) -> bool:
+def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
     """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
-    return is_cross_letter(before, after, vectors)
+    return is_cross_letter(before, factor, vectors)
 
 
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
@@ -424,8 +436,9 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
+        factor = last if is_mass_before_vector(after, last) else after
         if (sign.kind == "mark" and sign.text == "×") or (
-            "x" not in alone and _is_cross(before, sign, after, vectors) and ("cross", sign.start) not in flips
+            "x" not in alone and _is_cross(before, sign, after, factor, vectors) and ("cross", sign.start) not in flips
         ):
             if "number" in (before.kind, after.kind):
                 continue
@@ -455,6 +468,7 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
     are vectors that a matrix R rotates.
     """
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
+    yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
@@ -477,6 +491,18 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
             or (_is_dot(before) and name.spaced)
         ):
             yield name.text
+
+
+def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
+    """Yield the names F and d of ``F·d = F d cos θ``, whose scalar product is given by their lengths."""
+    texts = [token.text for token in tokens if token.kind != "end"]
+    for sides in (texts, texts[::-1]):
+        first, dot, second, sign, *rest = [*sides, *[""] * 4]
+        names = [word for word in rest if word and word not in ("*", "·", "|", "(", ")")]
+        is_product = dot == "·" and sign in ("=", "==") and is_usual_vector(first) and is_usual_vector(second)
+        has_lengths = {first, second} <= {*names} or first + second in names
+        if is_product and first != second and len(names) <= 4 and "cos" in names and has_lengths:
+            yield from (first, second)
 
 
 def _is_dot(token: Token) -> bool:

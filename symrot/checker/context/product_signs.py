@@ -8,15 +8,39 @@ from dataclasses import replace
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node, negated, text
+from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
-__all__ = ["in_claim", "with_minus_sign"]
+__all__ = ["in_claim", "sign_by_integral", "with_minus_sign", "with_sign"]
 
 NOTE = "products of inertia are those without the minus sign, I_xy = integral of x*y dm"
-WITH_MINUS = next(quantity for quantity in QUANTITIES if quantity.sign == "minus")
+WITH_MINUS, WITHOUT_MINUS = (
+    next(quantity for quantity in QUANTITIES if quantity.sign == sign) for sign in ("minus", "plus")
+)
+COORDINATES = ("x", "y", "z")
+
+
+def sign_by_integral(name: Node, formula: Node) -> str:
+    """Return "plus" for ``I_xy = integral of x*y dm``, "minus" for its negative, and "" for any other definition."""
+    integral = formula.args[0] if formula.kind == "neg" else formula
+    if not _is_product(name) or integral.kind != "call" or integral.value != "integral_over_body":
+        return ""
+    inside, negative = integral.args[0], formula.kind == "neg"
+    if inside.kind == "neg":
+        inside, negative = inside.args[0], not negative
+    factors = [str(factor.value) for factor in inside.args] if inside.kind == "product" else []
+    is_pair = len({*factors}) == len(factors) == 2 and {*factors} <= {*COORDINATES}
+    return ("minus" if negative else "plus") if is_pair and sorted(factors) == sorted(str(name.value)[-2:]) else ""
+
+
+def with_sign(context: Context, name: Node, sign: str) -> Context:
+    """Return a context in which a definition by an integral states the sign of products of inertia."""
+    quantity = WITH_MINUS if sign == "minus" else WITHOUT_MINUS
+    meaning = Meaning((str(name.value),), quantity, written=(str(name.value),))
+    return replace(context, meanings=(*context.meanings, meaning))
 
 
 def with_minus_sign(claim: Claim) -> Claim:

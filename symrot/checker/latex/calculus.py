@@ -7,7 +7,8 @@ from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
-from symrot.checker.typed.defined_functions import DEFINED, INVERSES, TWO_CONVENTIONS
+from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
+from symrot.checker.typed.densities import over_mass
 from symrot.latex import tree
 
 __all__ = ["DOTS", "CalculusPart"]
@@ -25,8 +26,8 @@ class CalculusPart(NamesPart):
             power = self.argument(raised.inside)
             sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
             is_inverse = power == negated(number(1))
-            if is_inverse and name == "cot":
-                raise self.fail(TWO_CONVENTIONS, function)
+            if is_inverse and name in DISPUTED:
+                raise self.fail(instead(name), function)
             if is_inverse and name in INVERSES and not self.doubtful("inverse", function, self.end_of_next(), sure):
                 name, power = INVERSES[name], None
             elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):
@@ -198,8 +199,11 @@ class CalculusPart(NamesPart):
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
         self.integrals -= 1
-        if not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        if self.differential() and self.peek(1).text in ("V", "A", "s") and (mass := over_mass(integrand)) is not None:
+            self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
+            integrand = mass
+        elif not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, dm, or a density and dV for an integral over a body")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 

@@ -13,11 +13,13 @@ from symrot.latex import tree
 
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
-OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part"}
+OPERATORS = {
+    "\\arg": "arg", "\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part",
+}  # fmt: skip
 SPELLED = {
     "tr": "trace", "Tr": "trace", "Det": "det", "Diag": "diag", "Atan2": "atan2", "ATAN2": "atan2", "arctan2": "atan2",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "vers": "vers", "adj": "adjugate",
-    "Re": "real_part", "Im": "imaginary_part",
+    "Re": "real_part", "Im": "imaginary_part", "arg": "arg",
     **{name: name for name in BUILT_IN},
 }  # fmt: skip
 """Name in upright letters -> the function that it means."""

@@ -1,10 +1,13 @@
 """Parsing sums, products, powers, brackets and matrices in LaTeX, by the order of operations."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
+from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
@@ -278,22 +281,40 @@ class SumsPart(Cursor):
         if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
             return self.framed(frame)
         if opening.kind == "row":
-            return self.inside(opening, self.expression)
+            return self.inside(opening, lambda: self.paired(self.expression(), "+"))
         if opening.text == "[" and (matrix := self.matrix_name()) is not None:
             return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
+        inner = self.paired(inner, "-" if opening.text == "[" else "+") if opening.text in ("[", "\\{") else inner
         crossed = opening.text == "[" and self.take("\\times")
         self.expect(CLOSING[opening.text])
         self.open_bars = bars
         mark = self.peek()
         if not crossed:
             is_cross = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
+            if isinstance(mark, tree.Script) and mark.text == "_" and inner.value == "cross":
+                index, used = tree.alone(mark.inside).text, "".join(re.findall(r"_\{?(\w+)", self.source))
+                if (component := component_of_cross(inner.args, index, used)) is not None:
+                    self.next()
+                    return component
             if opening.text != "[" or not is_cross:
                 return inner
             self.next()
         self.note_vector(inner)
         return Node("call", "skew", (inner,))
+
+    def paired(self, first: Node, sign: str) -> Node:
+        r"""Read ``, B`` after A in ``[A, B]`` or ``\{A, B\}`` with Pauli's matrices; return the (anti)commutator."""
+        if not self.at(","):
+            return first
+        comma = self.next()
+        pair = commutator(first, self.expression(), sign)
+        if pair is None:
+            raise self.fail(
+                "a closing bracket (a commutator other than of Pauli's matrices is written A B - B A)", comma
+            )
+        return pair
 
     def framed(self, mark: tree.Script) -> Node:
         r"""Parse a name after the mark of its frame, ``{}^A R_B``; return its node.

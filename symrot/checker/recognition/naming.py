@@ -90,6 +90,7 @@ MOST_READINGS = 4
 """The most formulas that one verdict names."""
 
 
+MINUS_PRODUCTS = "products of inertia are those with the minus sign, I_xy = -integral of x*y dm"
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
 SQUARED = ", squared"
@@ -110,7 +111,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
-        return Verdict("recognised", recognised_as=readings)
+        return Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
     nearest = _nearest(claim, named) if repair else None
     if nearest is not None:
         return nearest
@@ -176,6 +177,17 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
             readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
             return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
     return ()
+
+
+def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
+    """Return a note on the convention for products of inertia, if the sign of one matters and nothing states it."""
+    names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
+    if not names or claim.context.sign_of_products or any("minus sign" in f"{k.name} {k.how}" for k in readings):
+        return ()
+    interpreter = claim.interpreter()
+    value, symbols = interpreter.read(named.formula), [interpreter.read(Node("name", name)) for name in names]
+    is_even = value == value.xreplace({symbol: -symbol for symbol in symbols})
+    return () if is_even else (MINUS_PRODUCTS,)
 
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:

@@ -13,13 +13,18 @@ from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
-__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
-           "is_usual_vector"]  # fmt: skip
+__all__ = [
+    "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
+    "is_mass_before_vector", "is_usual_vector",
+]  # fmt: skip
 
 DEEPEST_NESTING = 60
 LONGEST_NUMBER = 200
 TIME = Node("name", "t")
 ADDING = ("+", "-")
+MASS = "dm"
+"""The element of mass of a body."""
+
 FACTOR_MARKS = ("(", "[", "√")
 """Marks with which a factor without a sign before it may start."""
 
@@ -89,6 +94,7 @@ class Cursor(ABC):
         self.vocabulary, self.flips, self.as_sympy = vocabulary or Vocabulary(), flips, as_sympy
         self.depth = self.index = self.bars = 0
         self.plain = self.in_integral = False
+        self.element = MASS
         self.doubts: list[Doubt] = []
         self.notes: list[str] = []
         self.timed: set[str] = set()
@@ -201,8 +207,8 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
 
     def is_element(self) -> bool:
-        """Return whether the mass element dm of an integral is at the cursor."""
-        return self.token().text == "dm"
+        """Return whether the element of the integral, such as dm or dx, is at the cursor."""
+        return self.token().text == self.element
 
     def end_of_run(self) -> int:
         """Return the position in the text where the factor at the cursor ends."""
@@ -226,6 +232,7 @@ class Cursor(ABC):
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
+        after = self.token(2) if is_mass_before_vector(after, self.token(2)) else after
         if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
@@ -234,6 +241,11 @@ class Cursor(ABC):
 def is_usual_vector(name: str) -> bool:
     """Return whether books usually give a name, such as r or v, to a vector."""
     return re.split("[_0-9]", name)[0] in USUAL_VECTORS
+
+
+def is_mass_before_vector(token: Token, after: Token) -> bool:
+    """Return whether a token is the mass m in ``r x m v``."""
+    return token.text in ("m", "M") and after.kind == "name" and is_usual_vector(after.text)
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:

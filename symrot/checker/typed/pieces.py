@@ -5,10 +5,12 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, TIME
+from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS, TIME
+from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
 from symrot.checker.typed.words import PARTS, SINGLE_ARGUMENT
@@ -25,6 +27,9 @@ METHODS = {
 CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 """Name after ``Matrix.`` -> the function."""
 
+
+ELEMENTS = (MASS, "dV", "dA", "ds")
+"""The elements of integrals over a body, by its mass, volume, area or length."""
 
 MOST_DOTS = 4
 """The highest order of a derivative that is written with primes or dots."""
@@ -63,6 +68,8 @@ class PiecesPart(OpenFunctionsPart):
                 self.plain = True
                 self.next()
                 node = Node("call", CONJUGATE, (node,), self.span(start))
+            elif token.text == "_" and (component := self.component(node)) is not None:
+                node = component
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
                     raise self.fail("a single degree sign")
@@ -72,6 +79,14 @@ class PiecesPart(OpenFunctionsPart):
                 node = product(degrees, self.span(start))
             else:
                 return node
+
+    def component(self, node: Node) -> Node | None:
+        """Read the index after the bracket in ``(ω × r)_i`` and return the component of the cross product."""
+        index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
+        made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
+        self.plain = True
+        self.index += 2 * (made is not None)
+        return made
 
     def is_star(self) -> bool:
         """Return whether a star marks a conjugate, as in ``q v q*``: no blank is before it, and no factor follows.
@@ -168,6 +183,8 @@ class PiecesPart(OpenFunctionsPart):
         word = token.text
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
+        if self.source[token.start] == "∂":
+            raise self.fail("a derivative ∂f/∂x (or write diff(f, x))", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
@@ -286,19 +303,59 @@ class PiecesPart(OpenFunctionsPart):
             return Node("call", "sqrt", (Node("call", "dot", (inner, inner), self.span(token.start)),))
         return Node("call", "abs", (inner,), self.span(token.start))
 
-    def over_body(self, token: Token) -> Node:
-        """Parse ``∫ x² dm``, an integral over a body of unknown shape; return its tree."""
+    def integral(self, token: Token) -> Node:
+        """Read ``∫_0^1 x dx``, or ``∫ x² dm`` and ``∫ ρ x² dV`` over a body that the text does not describe."""
         self.plain = True
-        self.in_integral = True
+        limits = self.limits() if self.take("_") else None
+        outer = self.in_integral, self.element
+        self.in_integral, self.element = True, self.element_ahead(limits is not None)
         inner = number(1) if self.is_element() else self.expression()
-        self.in_integral = False
         if not self.is_element():
-            raise self.fail("dm at the end of an integral over a body (write integrate(f, (x, from, to)) for others)")
-        self.next()
+            raise self.fail("dm at the end of an integral over a body, or limits and dx, as in ∫_0^1 x dx,")
+        element = self.next().text
+        self.in_integral, self.element = outer
+        if limits is not None:
+            variable = Node("list", ("(", ")"), (Node("name", element[1:]), *limits))
+            return Node("call", "integrate", (inner, variable), self.span(token.start))
+        if element != MASS:
+            mass = over_mass(inner)
+            if mass is None:
+                raise self.fail(f"a density in front of {element}, limits, or dm")
+            self.note(f"the density times {element} is read as dm")
+            inner = mass
         return Node("call", "integral_over_body", (inner,), self.span(token.start))
+
+    def limits(self) -> tuple[Node, Node]:
+        """Read the limits of an integral after ``∫_``, as in ``∫_0^1`` or ``∫₀¹``."""
+        lower = self.limit()
+        if self.token().kind == "power":
+            return lower, number(int(self.next().text))
+        self.expect("^")
+        return lower, self.limit()
+
+    def limit(self) -> Node:
+        negative, first = self.take("-"), self.token()
+        node = self.postfix()
+        if first.kind == "number" and self.token().tight and self.token().text == "pi":
+            node = product([node, self.postfix()])  # ∫_0^2π
+        return Node("neg", None, (node,), node.span) if negative else node
+
+    def element_ahead(self, has_limits: bool) -> str:
+        """Return the element of the integral at the cursor: dm or dV, or with limits the first name such as dx."""
+        depth = inner = 0
+        for before, token in pairwise(self.tokens[self.index - 1 :]):
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            if depth < 0 or token.text in SIGNS:
+                break
+            is_short = len(token.text) > 1 and token.text.startswith("d") and token.text not in BUILT_IN
+            is_element = token.kind == "name" and depth == 0 and before.text != "/" and is_short
+            if is_element and inner == 0 and (has_limits or token.text in ELEMENTS):
+                return token.text
+            inner += (token.text == "∫") - is_element
+        return MASS
 
     readers: ClassVar[Mapping[str, Callable[[Any, Token], Node]]] = {
         "number": OpenFunctionsPart.numeral, "name": name, "fraction": fraction, "(": bracket, "[": square_bracket,
-        "|": absolute, "‖": absolute, "∫": over_body, "√": OpenFunctionsPart.root,
+        "|": absolute, "‖": absolute, "∫": integral, "√": OpenFunctionsPart.root,
     }  # fmt: skip
     """Kind of a token, or the mark -> the function that reads a piece that starts with it."""

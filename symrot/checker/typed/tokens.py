@@ -75,7 +75,7 @@ _FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
 
 _HINTS = {
     "\\": "LaTeX goes into latex = ..",     "∬": "write integrate(f, (x, from, to))",
-    "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
+    "∭": "write integrate(f, (x, from, to))",
     "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
@@ -92,6 +92,9 @@ _MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°⊗∘‖±
 _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)}]+")
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
 """Primes between a letter and its subscript."""
+
+_AXIS_PAIR = re.compile("[IJP]_[xyz]'[xyz]'")
+"""A product of inertia about axes with a prime."""
 
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
 _SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
@@ -177,6 +180,12 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "fraction", "/".join(_written(part) for part in fraction.groups()), fraction.end()
     elif character in LETTERS:
         yield from _letter(text, at, LETTERS[character])
+    elif character == "∂":
+        yield from _differential(text, at + 1)
+    elif character == "_" and at and text[at - 1] in ")]":
+        yield "mark", "_", at + 1
+    elif text[:at].rstrip().endswith("∫") and (character == "_" or character in _LOWERED):
+        yield from _lower_limit(text, at)
     elif name := _NAME.match(text, at):
         yield from _name(text, at, name)
     elif mark := _MARK.match(text, at):
@@ -197,6 +206,27 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "fraction", str(Fraction(unicodedata.numeric(character)).limit_denominator(10)), at + 1
 
 
+def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the tokens of the name after ``∂``, with d in front: ``∂T`` is read as ``dT``, and ``∂`` alone as ``d``."""
+    name = _NAME.match(text, at)
+    if text[at : at + 1] in LETTERS:
+        pieces = [*_pieces(text, at)]
+    else:
+        pieces = [*_name(text, at, name)] if name else [("name", "", at)]
+    kind, word, stop = pieces[0]
+    yield kind, f"d{word}", stop
+    yield from pieces[1:]
+
+
+def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the mark ``_`` of the lower limit of an integral; lowered digits ``∫₀`` are the limit itself."""
+    lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, at)
+    yield "mark", "_", at if lowered else at + 1
+    if lowered is not None:
+        digits = _written(lowered[0])
+        yield "number" if digits.isdigit() else "name", digits, lowered.end()
+
+
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
     """Yield the tokens of a name of Latin letters.
 
@@ -213,6 +243,9 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
         return
     if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
         word, stop = word + LETTERS[text[stop]], stop + 1
+    if _AXIS_PAIR.fullmatch(f"{word}{text[stop : stop + 3]}"):  # I_x'y' is one name, as in LaTeX
+        yield "name", f"{word}_prime{text[stop + 1]}_prime", stop + 3
+        return
     primes = _PRIMED.match(text, stop)
     stop = primes.end() if primes else stop
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, stop)

@@ -5,11 +5,13 @@ from dataclasses import replace
 
 from symrot.checker.arrays.complex_parts import imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Chain, Reading
-from symrot.checker.claim.source.text import check_units, claim_of_relation
+from symrot.checker.claim.reader import Chain, Reading, readings_of
+from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.context.product_signs import sign_by_integral, with_sign
+from symrot.checker.latex.reader import latex_readings
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
@@ -37,6 +39,7 @@ def claims_of_reading(
     stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
     numbers = _complex_numbers(reading.lines, context)
+    assume, stated = _with_signs_of_products(assume, stated)
     for chain in reading.lines:
         links = chain.links
         if len(links) > 1 and set(chain.signs) != {"=="}:
@@ -57,11 +60,27 @@ def claims_of_reading(
             claims.append(replace(claim, context=stated))
         lines.append(claims)
         first = chain.sides[0]
+        if sign := sign_by_integral(first, chain.sides[1]):
+            stated = with_sign(stated, first, sign)
+            continue
         reserved = ("pi", "t", *(name for name, _ in define))
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
         if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
     return lines
+
+
+def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
+    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context in which they state a sign."""
+    others = []
+    for source in assume:
+        readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")
+        left, right = readings[0].lines[0].sides[:2]
+        if sign := sign_by_integral(left, right):
+            stated = with_sign(stated, left, sign)
+        else:
+            others.append(source)
+    return others, stated
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:

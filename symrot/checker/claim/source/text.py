@@ -81,6 +81,8 @@ def claim_of_relation(
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
+    relation, on_form = _with_own_name(relation)
+    notes = [*notes, *([on_form] if on_form else [])]
     names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
     words = {name for name in names if len(name) > 1 and name.isalpha()}
     matrices = {source: _matrix_given(source, words) for source in assume}
@@ -150,6 +152,18 @@ def claim_of_relation(
         has_parts=unit is not None or bool(on_indices),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _with_own_name(relation: Relation) -> tuple[Relation, str]:
+    """Return ``I = n.T*I*n`` with the name I_n for the left side, a number, and a note; other equations unchanged."""
+    sign, left, right = relation
+    first, *rest = right.args if right.kind == "product" else (right,)
+    is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
+    if left.kind != "name" or not is_form or left not in rest[:-1]:
+        return relation, ""
+    name = f"{left.value}_{rest[-1].value}"
+    note = f"{left.value} on the left is the moment {name} about the axis {rest[-1].value}, on the right the tensor"
+    return (sign, Node("name", name), right), note
 
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
