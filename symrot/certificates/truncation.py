@@ -124,7 +124,7 @@ class _Power:
         return self + -_Power.of(other, len(self.terms))
 
     def __rsub__(self, other: Any) -> "_Power":
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> "_Power":
         a, b = self.terms, _Power.of(other, len(self.terms)).terms
@@ -140,7 +140,7 @@ class _Power:
         return _Power(tuple(quotient))
 
     def __rtruediv__(self, other: Any) -> "_Power":
-        return _Power.of(other, len(self.terms)) / self
+        return _Power.of(other, len(self.terms)).__truediv__(self)
 
     def __pow__(self, exponent: int) -> Any:
         result: Any = 1
