@@ -70,10 +70,7 @@ def load_certificate(path: Path) -> Data:
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     if str(data.get("schema", "")).startswith("symrot.step/"):
-        raise CertificateError(
-            f"{path}: expected the certificate of a kernel, got one of a step; `{data.get('regenerate')} -o DIR` "
-            "proves it again"
-        )
+        raise CertificateError(f"{path}: expected the certificate of a kernel, got one of a step")
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")

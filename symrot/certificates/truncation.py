@@ -62,7 +62,9 @@ def _interval(low: Fraction, high: Fraction) -> Any:
 
 def _undefined(name: str) -> Callable[..., Any]:
     def refuse(*arguments: Any) -> Any:
-        raise InputError(f"expected rates of functions with bounds of truncation ({', '.join(_SCALAR)}), got {name}")
+        raise InputError(
+            f"expected rates of + - * / and {', '.join(_SCALAR)}, whose truncation can be bounded, got {name}"
+        )
 
     return refuse
 
@@ -93,7 +95,7 @@ def _over(above: Any, below: Any) -> Any:
 
 
 class _Functions(dict[str, Callable[..., Any]]):
-    """Functions by name; a function without a rule is refused when it is called."""
+    """A map from names to functions of power series; a function that is not in it raises InputError when called."""
 
     def __missing__(self, name: str) -> Callable[..., Any]:
         return _undefined(name)
@@ -122,7 +124,7 @@ class _Power:
         return self + -_Power.of(other, len(self.terms))
 
     def __rsub__(self, other: Any) -> "_Power":
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> "_Power":
         a, b = self.terms, _Power.of(other, len(self.terms)).terms
@@ -138,7 +140,7 @@ class _Power:
         return _Power(tuple(quotient))
 
     def __rtruediv__(self, other: Any) -> "_Power":
-        return _Power.of(other, len(self.terms)) / self
+        return _Power.of(other, len(self.terms)).__truediv__(self)
 
     def __pow__(self, exponent: int) -> Any:
         result: Any = 1
@@ -163,7 +165,10 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return sine and cosine, or hyperbolic sine and cosine, of a series; the two grow together."""
+    """Return sine and cosine, or hyperbolic sine and cosine, of a series.
+
+    Coefficient n + 1 of each is computed from the coefficients up to n of the other one.
+    """
     count = len(x.terms)
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     rates = [(k + 1) * x.terms[k + 1] for k in range(count - 1)]
@@ -238,7 +243,7 @@ def _density(tree: Tree) -> int:
 
 
 def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
-    """Return the elementary weight of a tree at each stage."""
+    """Return the elementary weight of a tree (the left side of its order condition) at each stage of a method."""
     inner = [_weight(subtree, method) for subtree in tree]
     return [
         prod((sum((a * weights[j] for j, a in stage.items()), Fraction(0)) for weights in inner), start=Fraction(1))
@@ -255,14 +260,16 @@ def require_order(method: Method) -> None:
         return
     for node, stage in zip(method.nodes, method.stages, strict=True):
         if sum(stage.values(), Fraction(0)) != node:
-            raise CertificateError(f"{method.name}: expected each node to be the sum of its weights, got {node}")
+            raise CertificateError(
+                f"{method.name}: expected each node to be the sum of the weights of its stage, got {node}"
+            )
     for tree in (tree for size in range(1, method.order + 1) for tree in _trees(size)):
         weights = _weight(tree, method)
         total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
         if total != Fraction(1, _density(tree)):
             raise CertificateError(
-                f"{method.name}: expected a method of order {method.order}, got one whose condition of a tree with "
-                f"{_size(tree)} nodes is {total} instead of 1/{_density(tree)}"
+                f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
+                f"of a tree with {_size(tree)} nodes: {total} instead of 1/{_density(tree)}"
             )
 
 
@@ -307,9 +314,8 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
         most = [max(bounds[i] for bounds, _ in parts) for i in range(len(states))]
     if inf in most:
         raise InputError(
-            f"{rates.signature.name}: expected steps that the motion from each state of the box survives, got sizes "
-            f"dt up to {float(max(map(abs, box[SIZE]))):g} s that are too large for a bound; take smaller dt or a "
-            "smaller box"
+            f"{rates.signature.name}: expected steps so short that their truncation errors have a bound on the whole "
+            f"box, got sizes dt up to {float(max(map(abs, box[SIZE]))):g} s; take smaller dt or a smaller box"
         )
     return dict(zip(states, most, strict=True))
 
@@ -322,7 +328,7 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return, for each input whose halves have smaller bounds, by how much its division lowers the bound."""
+    """Return by which fraction halving the box in each input lowers the largest bound; omit inputs without a gain."""
     gains = {}
     for name, (low, high) in box.items():
         if low < high:

@@ -55,8 +55,8 @@ def _certify(options: Namespace) -> int:
     if options.all:
         from symrot.workshop import certify as certificates
 
-        if options.kernel or options.box or options.no_bounds:
-            raise InputError("certify: expected --all without a KERNEL, --box or --no-bounds "
+        if options.kernel or options.box or options.no_bounds or options.step:
+            raise InputError("certify: expected --all without a KERNEL, --box, --step or --no-bounds "
                              "(see `symrot certify --help`)")  # fmt: skip
         every, written = certificates.certify_all(options.directory, options.objects, progress)
         progress("")
@@ -66,7 +66,7 @@ def _certify(options: Namespace) -> int:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
     certificate = symrot.certify(
         options.kernel, options.box, directory=options.directory, objects=options.objects,
-        rounding=not options.no_bounds, progress=progress,
+        rounding=not options.no_bounds, step=options.step, order=options.order, progress=progress,
     )  # fmt: skip
     progress("")
     say_json(certificate.data) if options.json else say([str(certificate), *map(str, certificate.files)])
@@ -107,7 +107,7 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds need, so that contraction (a*b + c rounded once) is accepted",
+        help="test only what the error bounds need: they allow that a*b + c is rounded only once",
     )
     json_option(parser)
 
@@ -137,6 +137,9 @@ def _certify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input for the bounds of rounding errors, or of a physical constant of a "
                         "scene; may be repeated")  # fmt: skip
+    parser.add_argument("--step", metavar="METHOD", help="certify one time step of a scene: rk4, taylor or dop853; "
+                        "with --box for its states and dt, bound rounding and truncation")  # fmt: skip
+    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
     parser.add_argument(
         "--objects", action="store_true", help="compile the kernel, and compare the object code with the C text"
     )

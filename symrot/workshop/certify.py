@@ -22,6 +22,7 @@ from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import kernel_names
 from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
 from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
+from symrot.workshop.steps.audit import audit_step, step_data
 from symrot.workshop.workers import workers
 
 __all__ = [
@@ -100,6 +101,8 @@ def audit_file(
         If a statement does not hold; the message names the first such statement.
     """
     progress(f"auditing {path.name} ..")
+    if (step := step_data(path)) is not None:
+        return _audit_step(path, step, object_file, rerun, coq, progress)
     try:
         data, report = audit(path, _proven_statement)
     except CertificateError as reason:
@@ -112,6 +115,16 @@ def audit_file(
     if coq:
         report += _coq(data, progress)
     return report
+
+
+def _audit_step(
+    path: Path, data: Data, object_file: Path | None, rerun: bool, coq: bool, progress: Callable[[str], object]
+) -> list[str]:
+    report = audit_step(path, data, rerun, progress)
+    if object_file is not None:
+        source = path.with_name(f"{data['kernel']}.c")
+        report += object_code.object_lines(source.read_text(encoding="utf-8"), object_file, source.name)
+    return [*report, "no theorem of Coq is about a step"] if coq else report
 
 
 def audit_files(

@@ -164,8 +164,8 @@ class StepText(KernelText):
         """The step with its texts, as the object from which its certificate is made."""
         description = self._description("c")
         return StepUnderTest(
-            self.name, description.title, description.command, self._rates_program, self.method, self._program,
-            self.c_files(),
+            self.name, description.title, description.command, self._rates_program, self.method,
+            tuple(self.rates.inputs.parameters), self.c_files(),
         )  # fmt: skip
 
     def certificate(self, bounds: Bounds | None = None) -> str:

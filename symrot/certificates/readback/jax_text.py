@@ -157,7 +157,7 @@ def _assignment(line: str, where: str) -> str:
 
 
 def _split(text: str) -> list[str]:
-    """Return the parts of a text between the commas that stand in no brackets."""
+    """Split a text at the commas outside brackets, and return the parts."""
     depth, parts = 0, [""]
     for letter in text:
         depth += (letter in "([") - (letter in ")]")
