@@ -8,7 +8,7 @@ and propagates the motion. Each public name is imported at its first use, so ``i
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _NAMES_OF_MODULES = {
     "conventions": ("SEQUENCES",),

@@ -105,6 +105,6 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 
 def with_hint(message: str, word: object, known: Iterable[str]) -> str:
-    """Return a message, followed by the known word that is most similar to a mistyped one, if there is any."""
+    """Return a message, followed by "did you mean 'x'?" if a known word x is similar to the mistyped word."""
     hint = nearest(word, known)
     return f"{message} ({hint})" if hint else message

@@ -2,6 +2,8 @@
 
 import ast
 import os
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -144,8 +146,15 @@ def test_a_name_that_is_not_there_is_an_attribute_error():
 
 @pytest.fixture(scope="module")
 def unpacked_wheel(tmp_path_factory):
-    """Return the folder of the wheel, unpacked outside the source tree."""
+    """Return the folder of the wheel, unpacked outside the source tree.
+
+    It is built from a copy, because setuptools writes into the folder that it builds, and two processes may test.
+    """
     directory = tmp_path_factory.mktemp("wheel")
+    source = directory / "source"
+    shutil.copytree(PACKAGE, source / "symrot", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"):
+        shutil.copy(ROOT / name, source)
     command = [
         sys.executable,
         "-m",
@@ -156,7 +165,7 @@ def unpacked_wheel(tmp_path_factory):
         "--no-build-isolation",
         "-w",
         str(directory),
-        str(ROOT),
+        str(source),
     ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -184,6 +193,14 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     }
     assert wanted <= held
     assert not any(name.startswith("tests") for name in held)
+
+
+def test_all_files_name_the_same_version(unpacked_wheel):
+    (metadata,) = unpacked_wheel.glob("symrot-*.dist-info/METADATA")
+    (changes,) = re.findall(r"^## \[(\d.*?)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)[:1]
+    (citation,) = re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.MULTILINE)
+    (installed,) = re.findall(r"^Version: (.*)$", metadata.read_text("utf-8"), re.MULTILINE)
+    assert {changes, citation, installed} == {symrot.__version__}
 
 
 def test_a_warm_run_imports_nothing_it_can_do_without(tmp_path):

@@ -58,9 +58,10 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Return, for each motion, its name, the formula used for its parameters (regime), and six least times in s.
+    """Time several motions in closed form.
 
-    The times are: set-up, both quantities, omega alone, attitude alone, one sample, set-up with both quantities.
+    Return for each its name, its regime (which formula applies), and six times, s. The times are the least ones of all
+    rounds: set-up, omega and attitude, omega alone, attitude alone, one sample, set-up with omega and attitude.
     """
     t = np.linspace(0.0, SPAN, SAMPLES)
     one = t[:1]

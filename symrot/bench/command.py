@@ -1,4 +1,4 @@
-"""The modes of ``symrot bench`` as a table; each mode is an option of the command line.
+"""The command ``symrot bench``: a table of its modes, each of which is chosen by an option of the command line.
 
 A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
 mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to
@@ -118,6 +118,7 @@ STUDIES: dict[str, str] = {
     "long": "1e6 revolutions by stepping: energy, attitude and time",
     "start": "`symrot run` from a cold and from a warm start",
     "derive": "how long deriving takes",
+    "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
 }
 """Studies of a single question: the name of a module in :mod:`symrot.bench` -> the question."""
 
@@ -162,10 +163,12 @@ def arguments(parser: ArgumentParser) -> None:
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
-    add("--methods", metavar="NAMES", help="methods, separated by commas, of exact, taylor, dop853, scipy, heyoka, "
-        "DOP853, RK45, LSODA and Radau (default: all)")  # fmt: skip
+    add("--methods", metavar="NAMES", help="methods to compare, separated by commas: exact, taylor, "
+        "dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau (default: all)")  # fmt: skip
     add(
-        "--tolerances", metavar="LIST", help="tolerances, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)"
+        "--tolerances",
+        metavar="LIST",
+        help="tolerances of the methods, such as 1e-3,1e-6,1e-9 (default: one or two per power of ten)",
     )
     add(
         "--rounds",

@@ -33,7 +33,7 @@ PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: its times and error, and the distance of its samples from symrot's best run."""
+    """One contestant at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
 
     measured: Measured
     apart: float
@@ -95,7 +95,7 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; in angular velocities, relative to their size."""
+    """Return the largest difference between samples of two runs; differences of angular velocities are relative."""
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))

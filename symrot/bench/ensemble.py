@@ -1,4 +1,4 @@
-"""Times of ensembles, computed in SIMD vectors, against heyoka's batch and ensemble modes at equal error, on one core.
+"""Times of symrot's ensembles in SIMD vectors and of heyoka's batch and ensemble modes, at equal error on one core.
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
@@ -37,7 +37,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # only two, because heyoka's ensemble copie
 
 
 class Start(NamedTuple):
-    """An ensemble to measure: motion, initial states (n, N), end time, reference end states of the first 16."""
+    """An ensemble to be timed: motion, initial states (n, N), end time, and the exact end states of the first 16."""
 
     problem: Any
     y: Floats
@@ -62,7 +62,7 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return the end states of trajectories from the initial states ``y``, computed by heyoka in long double."""
+    """Return reference end states of trajectories from the initial states ``y``, computed by heyoka in long double."""
     import heyoka
 
     real = np.longdouble
@@ -222,7 +222,11 @@ def main(arguments: list[str] | None = None) -> None:
     """Print the times of ensembles, symrot against heyoka, at equal error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
+    parser.add_argument(
+        "--orders",
+        action="store_true",
+        help="compare the times of different orders of symrot's Taylor series, instead of heyoka",
+    )
     parser.add_argument(
         "--many", type=int, default=4096, help="number of trajectories in the large ensemble, a multiple of 8"
     )

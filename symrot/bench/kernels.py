@@ -1,6 +1,9 @@
 """Comparison of symrot's kernels with kernels of other tools: operations, and nanoseconds per sample.
 
-    python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
+    python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..] [--jacobians] [--count]
+
+With ``--jacobians``, each kernel also computes the derivatives of its outputs by angles, quaternion and angular
+velocity, which each tool derives itself. ``--count`` counts operations only, in seconds.
 
 A contestant is one tool's version of a kernel. Each is timed on one sample at a time, on a batch that fits in the
 cache, and on a batch of 10^6 samples. All contestants alternate in one run, on one thread, on the same memory, and
@@ -33,8 +36,9 @@ from symrot.codegen.printing.c_source import MATH_HEADER, c_name
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Signature
+from symrot.kernels.jacobian import BY, jacobian_name
 from symrot.kernels.library import definition
-from symrot.workshop.emit import emit
+from symrot.workshop.emit import Emitted, emit
 
 __all__ = ["Contestant", "contest", "main"]
 
@@ -48,6 +52,7 @@ PLACES = {"one": 1, "cached": 1, "many": 7}  # numbers of memory blocks between 
 SHORTEST = 1e-3  # s, least duration of one measurement
 BAR = 1.05  # largest accepted ratio of symrot's time to the least time of the other tools
 FLOOR = "moves only"
+OWN_START = "CasADi from symrot's program"
 
 Floats = NDArray[np.float64]
 SHAPES = ("one", "cached", "many")
@@ -55,7 +60,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and seconds per sample for each shape of input and round.
+    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input.
 
     The shapes of input are "one" sample at a time, a "cached" batch and "many" samples.
     """
@@ -84,7 +89,7 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return inputs and outputs in memory that all contestants share; samples are rows, or columns in a batch.
+    """Return arrays for inputs and outputs that all contestants share; samples are rows, or columns in a batch.
 
     The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
     ordinary allocation, their distance modulo a page and the kind of pages would differ in each run, and every second
@@ -205,7 +210,7 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function of ``place`` that times ``run(repeats, place)`` in s per sample, with enough repeats."""
+    """Return a function that calls ``run(repeats, place)`` with enough repeats, and returns its time per sample, s."""
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
@@ -249,15 +254,20 @@ def _in_c(
     return runs, _block(name, "cached", CACHED, 0)[1].copy()
 
 
+def _emitted(name: str) -> Emitted:
+    base, *variables = name.split(BY)
+    return emit(base, jacobian=variables)
+
+
 def _symrot_text(name: str) -> str:
-    emitted = emit(name)
+    emitted = _emitted(name)
     return emitted.source.replace(f'#include "{MATH_HEADER}"', math_header()).replace(
         f'#include "{name}.h"', emitted.header
     )
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return each tool's version of a kernel, beginning with symrot's, and the names of the missing tools.
+    """Return the contestants for a kernel (one per tool, symrot first), and the names of the missing tools.
 
     Raise AssertionError if the outputs of two tools differ.
     """
@@ -265,12 +275,15 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     missing: list[str] = []
     signature = kernel_program(name).signature
     runs, reference = _in_c(name, _symrot_text(name) + _drivers(signature, True), many)
-    contestants.append(Contestant("symrot", counted(emit(name).source, name), runs))
+    contestants.append(Contestant("symrot", counted(_emitted(name).source, name), runs))
 
     def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], outputs: Floats) -> None:
         error = float(np.max(np.abs(outputs - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
-            raise AssertionError(f"{tool}: expected the results of symrot for {name}, got a difference of {error:.1e}")
+            raise AssertionError(
+                f"{tool}: expected outputs of {name} that agree with those of symrot, got outputs "
+                f"that differ by {error:.1e}"
+            )
         contestants.append(Contestant(tool, operations, runs))
 
     around = _drivers(signature, False)
@@ -298,7 +311,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions and outputs of CasADi's own evaluation, which maps a function over the samples."""
+    """Return timing functions and outputs for CasADi's own evaluation, which maps a function over the samples."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -402,10 +415,45 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 of its time."""
+    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 times its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
+
+
+def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
+    """Return the operations of a kernel by symrot and by other tools, and the names of the missing tools.
+
+    For derivatives, CasADi also starts from symrot's own program of the values instead of the textbook's formulas.
+    """
+    operations, missing = {"symrot": counted(_emitted(name).source, name)}, []
+    for tool, make in PEERS_IN_C.items():
+        try:
+            if (peer := make(name)) is not None:
+                operations[tool] = counted(peer, name)
+        except ImportError:
+            missing.append(tool)
+    try:
+        operations["CasADi"] = casadi_function(name)[1]
+        if BY in name:
+            operations[OWN_START] = casadi_function(name, kernel_program)[1]
+    except ImportError:
+        missing.append("CasADi")
+    return operations, missing
+
+
+def _count(names: Sequence[str]) -> None:
+    """Print the operations of kernels by symrot and by the other tools."""
+    over, absent = [], set[str]()
+    for name in names:
+        operations, missing = counts(name)
+        absent |= set(missing)
+        totals = {tool: count.total() for tool, count in operations.items()}
+        print(f"{name}: {', '.join(f'{tool} {total}' for tool, total in totals.items())}", flush=True)
+        over += [f"{name} {totals['symrot']} to {totals[tool]} of {tool}" for tool in totals
+                 if totals[tool] < totals["symrot"]]  # fmt: skip
+    print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
+    print(f"fewer operations than symrot: {'; '.join(over) or 'none'}")
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -414,14 +462,21 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="number of samples in the large batch; 0 omits it")
     parser.add_argument("--kernels", nargs="+", metavar="NAME", help="kernels to compare (default: those in the table)")
+    parser.add_argument("--jacobians", action="store_true", help="compare values with their derivatives")
+    parser.add_argument("--count", action="store_true", help="count operations only")
     options = parser.parse_args(arguments)
     rates = [f"euler_{sequence}_body_rates" for sequence in (*PROPER, *TAIT_BRYAN)]
-    names = options.kernels or ["quaternion_dcm", *rates, "rigid_body_tensor", "heavy_top"]
+    variables = {"quaternion_dcm": ("q",)} | dict.fromkeys(rates, ("angles", "omega"))
+    variables |= dict.fromkeys(("rigid_body_tensor", "heavy_top"), ("omega", "q"))
+    table = [jacobian_name(name, by if options.jacobians else ()) for name, by in variables.items()]
+    names = options.kernels or table
     try:
         for name in names:
             textbook(name)
     except InputError as error:
         parser.error(f"--kernels: {error}")
+    if options.count:
+        return _count(names)
     print(f"ns per sample: one at a time, {CACHED} in a batch, {options.many} in a batch; {' '.join(FLAGS[1:6])}")
     absent: set[str] = set()
     cells, over = 0, []

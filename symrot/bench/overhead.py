@@ -2,7 +2,7 @@
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
-For the bare call, all addresses are computed before, and copying a few bytes resets the state of the run, so that
+For the bare call, all addresses are computed in advance, and the state of the run is reset by copying a few bytes, so
 Python only makes the call. Runs alternate; the results are medians of processor time.
 """
 

@@ -1,4 +1,4 @@
-"""What specialised kernels save: the cost of each motion with the most general kernel and with the scene's own kernel.
+"""The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
 The general kernel has a full inertia tensor, the full attitude and all kinds of torque that can act together; the
 constants of a torque that the motion lacks are zero. Both kernels compute the same motion by Taylor series at the same
@@ -50,7 +50,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return a map from name to (description, scene) of the compared motions, the most general motion first."""
+    """Return the compared motions, the most general first, as a map from name to (description, scene)."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -69,7 +69,7 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene without any simplification, and with a zero torque of each kind that it lacks."""
+    """Return the plan of a scene without any simplification, with zero torques of all kinds that the scene lacks."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
@@ -103,7 +103,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table, still without times, and the runs to be timed for it, by name."""
+    """Return a row of the table without its times, and the functions that must be timed to complete it, by name."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}

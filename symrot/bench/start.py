@@ -1,4 +1,4 @@
-"""Time of a whole `symrot run` from the shell, with a warm and with an empty cache, and of its unavoidable parts.
+"""Time of a whole `symrot run` from the shell, with a filled and with an empty cache, and of its unavoidable parts.
 
     python -m symrot.bench.start [ROUNDS] [SCENE]
 

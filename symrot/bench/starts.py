@@ -1,4 +1,4 @@
-"""Times to compute a motion from another initial state: by one more call of a propagator, and in an ensemble.
+"""Times to compute a motion from a new initial state: by another call of a propagator, and in an ensemble.
 
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
@@ -6,7 +6,7 @@
 The first table has a row for each scene and method, in microseconds. The columns are:
 
 - reading the initial state; planning (with known structure); binding parameters; setting up the motion (constants of a
-  closed form, or the task of a stepper);
+  closed form, or the arguments of a stepper);
 - the motion itself: the work in C and the call of this work, if both angular velocity and attitude are changed;
 - whole calls at 101 times with another angular velocity, with another attitude, and with both;
 - overhead, the time of a call minus the time of its motion: for the more expensive of the first two calls, and for the
@@ -122,7 +122,7 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Return the median microseconds of two runs that alternate, and the median of their difference.
+    """Time two functions alternately; return the median of each in microseconds, and the median of their difference.
 
     A slow change of the machine's speed affects both runs and cancels in the difference.
     """
@@ -168,7 +168,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return three times in microseconds: of a call, of the motion in it, and of the rest of the call."""
+        """Return three times in microseconds: of a whole call, of the motion in it, and of the rest of the call."""
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
         own.follow(times, True)

@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 
 
 class Measurement(NamedTuple):
-    """One contestant: evaluations of the right-hand side, seconds of each round, largest error of the final state."""
+    """The result of one contestant: evaluations of the rates, seconds of each round, largest error at the end."""
 
     name: str
     evaluations: int

@@ -83,7 +83,7 @@ def scene(problem: Problem) -> Scene:
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
     """Return error, statistics and least seconds of a method on a test problem.
 
-    The error is the largest one at the samples and midway between them, relative to the largest value, in tolerances.
+    The error is the largest one at the samples and midway between them, divided by the largest value and the tolerance.
     """
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)

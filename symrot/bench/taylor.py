@@ -92,7 +92,7 @@ class Run(NamedTuple):
 
 
 class SteppedProblem(Problem):
-    """One motion of the comparison, on its whole span times ``scale``, with the libraries of its steppers."""
+    """One motion of the comparison, over ``scale`` times its span, with the libraries of its steppers."""
 
     def __init__(self, name: str, scale: float) -> None:
         super().__init__(scene(name))
@@ -168,7 +168,7 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
 ) -> TimedRun:
-    """Return a function that runs one of symrot's steppers; the stepper is set up once, as in a propagator."""
+    """Return a function that runs one of symrot's steppers, which is set up only once, as in a propagator."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -256,7 +256,7 @@ def raced(
 ) -> list[Run]:  # fmt: skip
     """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``.
 
-    ``error`` computes the error of a run from its last states.
+    ``error`` is a function that returns the error of a run from its last states.
     """
     runs = []
     for name, tolerance, task in tasks:
@@ -283,7 +283,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return the ratios of times by title of a column."""
+    """Print the table of one motion, and return its ratios of times as a map from the title of each column."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -346,9 +346,13 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="run heyoka in its default setting only")
-    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
     parser.add_argument(
-        "--reference", action="store_true", help="compute the last states and print them (takes minutes)"
+        "--orders",
+        action="store_true",
+        help="compare the times of different orders of symrot's Taylor series, instead of heyoka",
+    )
+    parser.add_argument(
+        "--reference", action="store_true", help="compute the reference states again and print them (takes minutes)"
     )
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""Errors of the functions that kernels call, in units in the last place (ulp).
+"""Measurement of the errors of functions that kernels call, in units in the last place (ulp).
 
     python -m symrot.bench.ulps [--points 20000]
 
@@ -46,7 +46,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches."""
+    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches.
+
+    The reach is the largest |x| that is tested.
+    """
 
     name: str
     exact: Callable[..., Any]
@@ -70,14 +73,14 @@ class Measured:
 
 @memoised
 def _quotient(name: str) -> Callable[[Any], Any]:
-    """Return the quotient of a function with a removable singularity, for numbers of mpmath."""
+    """Return a function with a removable singularity as its defining quotient, for numbers of mpmath."""
     x = Symbol("x", real=True)
     function: Callable[[Any], Any] = lambdify(x, REMOVABLE[name].formula(x), "mpmath")
     return function
 
 
 def _series(name: str, x: Any) -> Any:
-    """Return the value of a function with a removable singularity: its series near zero, its quotient elsewhere."""
+    """Return the exact value of a function with a removable singularity, near zero by its series."""
     import mpmath
 
     which = REMOVABLE[name]
@@ -133,7 +136,7 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return test arguments, one column per point; for functions of two arguments, components of vectors."""
+    """Return test arguments, one column per point; for a function of two arguments, a point has two components."""
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
@@ -157,8 +160,8 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 def _directions(real: Real, count: int, kind: Any) -> Floats:
     """Return test arguments y and x of the arc tangent, as two rows.
 
-    There are unit vectors in all directions, vectors of all magnitudes and ratios, and points near y = x/2, y = x and
-    y = 2 x.
+    The points are unit vectors in all directions, vectors of all magnitudes and ratios, and points near the lines y =
+    x/2, y = x and y = 2 x.
     """
     draw, third = np.random.default_rng(4), count // 3
     low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])

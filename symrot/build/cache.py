@@ -404,7 +404,7 @@ def _user_directory() -> tuple[Path, str]:
 
 
 def _directories() -> list[Path]:
-    """Return the directories that may contain entries: the user's cache, if it can be used, and the temporary one."""
+    """Return the directories that may hold compiled kernels: the user's cache, if usable, and the temporary one."""
     directory, reason = _user_directory()
     return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
 
@@ -458,7 +458,7 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the path of the library that an entry names, or None if its content does not match its checksum."""
+    """Return the path of the library that a cache entry names, or None if the library does not match its checksum."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None

@@ -46,7 +46,8 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
             complaint = process.communicate(source.encode(), seconds)[1].decode("utf-8", "replace")
         except TimeoutExpired:
             raise CompilerError(
-                f"the C compiler {command[0]} did not end within {seconds:g} s and was stopped; set CC to another one"
+                f"the C compiler {command[0]} did not end within {seconds:g} s and was stopped; "
+                "set CC to another compiler"
             ) from None
         finally:
             _running.discard(process)

@@ -3,7 +3,7 @@
 A certificate is a JSON file of statements about an emitted C kernel, with proofs. A check from the files alone
 (:mod:`symrot.certificates.exact_check`) comes first. The audit then checks that
 
-- the header holds nothing but prototypes, the C text performs the certified operations, and so does JavaScript;
+- the header holds nothing but prototypes, the C text performs the certified operations, and so do JavaScript and JAX;
 - symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
   name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
   :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
@@ -21,6 +21,7 @@ from symrot.certificates.certificate import Data, certificate_json, intended_tex
 from symrot.certificates.readback.header import check_header
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.javascript import compare_javascript
+from symrot.certificates.readback.jax_text import compare_jax
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
@@ -69,10 +70,7 @@ def load_certificate(path: Path) -> Data:
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     if str(data.get("schema", "")).startswith("symrot.step/"):
-        raise CertificateError(
-            f"{path}: expected the certificate of a kernel, got that of a step; `{data.get('regenerate')} -o DIR` "
-            "proves it again"
-        )
+        raise CertificateError(f"{path}: expected the certificate of a kernel, got one of a step")
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
@@ -92,7 +90,7 @@ def load_certificate(path: Path) -> Data:
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("expected different names in an object, got one name twice")
+        raise ValueError("expected each name at most once in a JSON object, got a name twice")
     return data
 
 
@@ -119,7 +117,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
     data = load_certificate(path)
     for file in data["files"]:
         if not file.startswith("../") and not (path.parent / file).is_file():
-            raise CertificateError(f"{path}: expected its file {file} in the same folder, and it is not there")
+            raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
     try:
         findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_compared(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
@@ -138,7 +136,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
-    findings = _check_javascript(path, data, source)
+    findings = _check_others(path, data, source)
     if path.read_text(encoding="utf-8") != certificate_json(data):
         raise CertificateError(
             f"{path}: expected a certificate as symrot prints it, got another layout; emit the kernel again"
@@ -152,25 +150,32 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     _compare(path, data, statement)
     return [
         *findings,
-        "formulas, laws, domain, units, flags and assumptions are those that symrot derives, and proves exactly",
+        "formulas, laws, domain, units, flags and assumptions equal those that symrot derives and proves exactly",
     ]
 
 
-def _check_javascript(path: Path, data: Data, source: str) -> list[str]:
-    """Check that the JavaScript of a kernel performs the operations of its C text.
+_READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
-    Return a list with one sentence, or an empty list if there is no JavaScript file.
+
+def _check_others(path: Path, data: Data, source: str) -> list[str]:
+    """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text.
+
+    Return a list with one sentence for each of the two files that is there.
     """
-    files = [file for file in data["files"] if file.endswith(".js") and (path.parent / file).is_file()]
-    for file in files:
-        compare_javascript((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
-    return [f"{file} performs the operations of the C text" for file in files]
+    findings = []
+    for ending, compare in _READERS.items():
+        for file in data["files"]:
+            if file.endswith(ending) and (path.parent / file).is_file():
+                compare((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
+                findings.append(f"{file} performs the operations of the C text")
+    return findings
 
 
 def _compared(data: Data) -> list[str]:
-    """Return a list with a sentence that verdicts on object code were not checked; empty if there are no such verdicts.
+    """Return a list of one sentence, which says that the certificate's verdicts on object code were not checked.
 
-    A verdict on object code holds only for the machine where it was made.
+    The list is empty if the certificate has no verdicts on object code. A verdict holds only for the machine where
+    it was made.
     """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
@@ -196,17 +201,17 @@ def _bounds(path: Path, data: Data, source: str) -> str:
             )
         return "no bounds of rounding errors" + (f": {own}" if own else "")
     if json.dumps(section) == json.dumps(own):
-        return "bounds of rounding errors are those that symrot knows of these operations on the kernel's own box"
+        return "bounds of rounding errors equal symrot's bounds of these operations on the kernel's own box"
     region = library_region(data["kernel"], source) if own is not None else None
     if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
         raise CertificateError(
-            f"{path}: expected bounds of rounding errors on the region of the kernel, got another region"
+            f"{path}: expected bounds of rounding errors under the kernel's own restrictions of inputs, got others"
         )
     kernels = list(operations_of(data, source).values())
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)
     check_bounds(section, double, single)
-    return "bounds of rounding errors on a box of your own are those that symrot finds there"
+    return "bounds of rounding errors equal those that symrot computes for these operations on the certificate's box"
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:

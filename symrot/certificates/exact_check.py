@@ -479,8 +479,11 @@ def check(path):
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)
-    laws = f"{len(data['laws'])} {'law' if len(data['laws']) == 1 else 'laws'} of the formulas"
-    return f"{name}: {len(files)} hashes, C text of {checked} and batches = formulas, {laws} (bounds not checked)"
+    laws = "1 law of the formulas holds" if len(data["laws"]) == 1 else f"{len(data['laws'])} laws of the formulas hold"
+    return (
+        f"{name}: {len(files)} hashes agree, the C text of {checked} (also of batches) computes the formulas, "
+        f"{laws} (bounds not checked)"
+    )
 
 
 REFUSALS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RecursionError, SyntaxError, TypeError)
@@ -490,6 +493,9 @@ REFUSALS += (ValueError,)
 def sentence(reason):
     """Return a sentence for the user about the exception that a failed check raised."""
     if isinstance(reason, (SyntaxError, LookupError)):
-        return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
-    text = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
+        return (
+            f"the certificate does not follow its schema, or the C text is not as symrot emits it ({reason.args[0]!r})"
+        )
+    is_sentence = isinstance(reason, (ValueError, OSError))
+    text = str(reason) if is_sentence else f"the certificate does not follow its schema ({reason!r})"
     return text if len(text) <= 400 else f"{text[:200]} .. {text[-200:]}"

@@ -55,7 +55,8 @@ def scene_kernel_under_test(
     """Return the kernel of a scene's equations of motion with all that its certificate states.
 
     ``parameters`` gives the kernel's arguments that stand for formulas in the scene's physical constants; ``outputs``
-    are the formulas of the rates and of their derivatives, by component, and ``named`` the quantities in them.
+    are the formulas of the rates and of their derivatives, by component; ``named`` are the named quantities that occur
+    in these formulas, each with its formula.
     """
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
     targets = (a for a in program.signature.arguments if a.role == "out")

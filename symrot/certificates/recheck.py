@@ -873,7 +873,7 @@ class CReader(Reader):
         return shape, bodies
 
     def comes(self, phrase):
-        """Return whether the next words are those of a phrase."""
+        """Return whether the next words are ``phrase``; do not move past them."""
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
@@ -1002,9 +1002,7 @@ def certified(path):
     except RecursionError:
         raise ValueError(f"{path.name}: expected a certificate, got lists nested too deeply") from None
     except (json.JSONDecodeError, UnicodeDecodeError) as reason:
-        raise ValueError(
-            f"{path.name}: expected JSON as the schema says, but the text is not JSON ({reason})"
-        ) from None
+        raise ValueError(f"{path.name}: expected JSON, but the text is not JSON ({reason})") from None
     check_shape(data, {"schema": TEXT, "seal": TEXT, "kernel": TEXT, "files": {str: TEXT}}, "certificate")
     sealed = {key: value for key, value in data.items() if key != "seal"}
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
@@ -1530,11 +1528,11 @@ def check_files(path):
             check_law(law, specification, 64 if has_choices(data) else 8)
         for function in readback:
             check_precision(function, data, specification, kernels)
-    return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
+    return f"{name}: {len(files)} hashes, the C text of {' and '.join(readback)} (also of batches) and the laws hold"
 
 
 def check(path):
-    """Check a certificate; return one line that lists the checks, or raise ValueError or OSError with one sentence."""
+    """Check a certificate; return one line that lists the checks, or raise an error whose message is one sentence."""
     try:
         return check_files(path)
     except (ValueError, OSError):
@@ -1551,7 +1549,7 @@ def main(paths):
         sys.exit("usage: python recheck.py NAME.cert.json ..")
     for path in paths:
         try:
-            print(f"{check(Path(path))}: hold")
+            print(check(Path(path)))
         except (ValueError, OSError) as reason:
             sys.exit(f"{path}: {reason}")
 

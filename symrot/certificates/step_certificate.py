@@ -5,10 +5,12 @@ both computed at random points, exactly, in the field of integers modulo a prime
 random functions. If the two differ as rational functions of degree d, they agree at a random point with a probability
 of at most ``2 d/PRIME``. The points follow from the hash of the C text, so that the certificate is the same everywhere.
 
-The certificate says nothing about rounding errors, and nothing about the truncation error but the order of the method.
+The certificate states the rates, so that it can be audited without the scene. For a box of states and step sizes it may
+also bound the errors of one step: rounding (:mod:`symrot.certificates.rounding`) and truncation
+(:mod:`symrot.certificates.truncation`).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from hashlib import sha256
@@ -19,21 +21,37 @@ from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
-from symrot.codegen.steps import Method, stepped
-from symrot.errors import CertificateError
-from symrot.formula.program import Program
-from symrot.formula.tree import FUNCTIONS
+from symrot.certificates.rounding.bounds import rounding_section
+from symrot.certificates.rounding.scenes import ANY
+from symrot.certificates.truncation import truncation_bounds
+from symrot.codegen.steps import SIZE, Method, step_signature, stepped
+from symrot.errors import CertificateError, InputError
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import FUNCTIONS, Node, parse, text
 
-__all__ = ["PRIME", "StepUnderTest", "step_certificate"]
+__all__ = [
+    "PRIME",
+    "SCHEMA",
+    "StepUnderTest",
+    "bounds_of_step",
+    "formula_section",
+    "is_step",
+    "rates_of",
+    "step_certificate",
+    "with_bounds",
+]
 
+SCHEMA = "symrot.step/2"
 PRIME = 2**127 - 1
 POINTS = 4
 TYPES = {"": "double", "f": "float"}
 TRUSTED = {
     "rates": "the formulas of the rates, which the certificate of the scene's own kernel proves",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
-    "not stated": "errors of rounding and truncation",
 }
+NOT_STATED = {"not stated": "errors of rounding and truncation"}
+EVALUATIONS = 32
+"""Boxes that the search for a bound of rounding errors evaluates per output; more hardly lower the bound of a step."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +63,7 @@ class StepUnderTest:
     command: str
     rates: Program
     method: Method
-    program: Program
+    values: tuple[float, ...]  # of the parameters of the rates
     files: Mapping[str, str]
 
 
@@ -136,47 +154,156 @@ def step_certificate(step: StepUnderTest) -> str:
     """
     return certificate_json(
         {
-            "schema": "symrot.step/1",
+            "schema": SCHEMA,
             "kernel": step.name,
             "title": step.title,
             "regenerate": step.command,
             "method": step.method.formula,
+            "step": {"method": step.method.name, "order": step.method.order},
+            "rates": _rates_section(step.rates, step.values),
             "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
-            "formula": {f"symrot_{step.name}{suffix}": _proof(step, suffix) for suffix in TYPES},
-            "trusted": TRUSTED,
+            "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
+            "trusted": TRUSTED | NOT_STATED,
         }
     )
 
 
-def _proof(step: StepUnderTest, suffix: str) -> Data:
-    file = f"{step.name}.c"
-    name, text = f"symrot_{step.name}{suffix}", step.files[file]
-    one = read_kernel(text, name, file)
-    if one.digest() != read_batch(text, f"{name}_batch", file).digest():
+def is_step(data: object) -> bool:
+    """Return whether the content of a JSON file is the certificate of a step."""
+    return isinstance(data, dict) and str(data.get("schema", "")).startswith("symrot.step/")
+
+
+def with_bounds(data: Data, bounds: Data) -> Data:
+    """Return the content of a certificate of a step that also states bounds of the errors of one step."""
+    bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
+    return bare | {"bounds": bounds, "trusted": TRUSTED}
+
+
+def _rates_section(rates: Program, values: Sequence[float]) -> Data:
+    """Return the rates as text, with the values of their parameters."""
+    parameters = [c for a in rates.signature.arguments if a.name == "p" for c in a.components]
+    return {
+        "states": [list(component[:2]) for component in rates.signature.argument("y").components],
+        "parameters": [
+            [name, meaning, value.hex()] for (name, _, meaning), value in zip(parameters, values, strict=True)
+        ],
+        "temporaries": [[name, text(node)] for name, node in rates.temporaries],
+        "formulas": [[name, text(node)] for name, node in rates.outputs],
+    }  # fmt: skip
+
+
+def rates_of(data: Data) -> Program:
+    """Return the rates that the certificate of a step states.
+
+    Raises
+    ------
+    CertificateError
+        If the section is not as symrot prints it.
+    """
+    try:
+        section = data["rates"]
+        states = tuple((name, unit, "") for name, unit in section["states"])
+        parameters = tuple((name, "", meaning) for name, meaning, value in section["parameters"])
+        arguments = (
+            Argument("t", "in", (("t", "s", "time"),), is_scalar=True), Argument("y", "in", states),
+            Argument("p", "in", parameters),
+            Argument("dy", "out", tuple((name, "", "") for name, _ in section["formulas"])),
+        )  # fmt: skip
+        if len(states) != len(section["formulas"]):
+            raise ValueError("as many formulas as states")
+        return Program(
+            Signature(f"{data['kernel']}_rates", arguments),
+            tuple((str(name), _folded(parse(formula))) for name, formula in section["temporaries"]),
+            tuple((str(name), _folded(parse(formula))) for name, formula in section["formulas"]),
+        )
+    except (InputError, KeyError, TypeError, ValueError, AttributeError) as reason:
+        raise CertificateError(f"expected the rates of a scene in the certificate, got others: {reason}") from None
+
+
+def _folded(node: Node) -> Node:
+    """Return a formula in which quotients of numbers are fractions, as they were before the formula was printed."""
+    if node[0] == "call":
+        return ("call", node[1], tuple(map(_folded, node[2])))
+    if node[0] in ("number", "symbol"):
+        return node
+    if node[0] == "**":
+        return ("**", _folded(node[1]), node[2])
+    parts = tuple(map(_folded, node[1:]))
+    if node[0] in ("neg", "/") and all(part[0] == "number" for part in parts):
+        values = [part[1] for part in parts]
+        return ("number", -values[0] if node[0] == "neg" else values[0] / values[1])
+    return (node[0], *parts)
+
+
+def bounds_of_step(
+    operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]]
+) -> Data:
+    """Return the section ``bounds`` of the certificate of a step: rounding and truncation on a box.
+
+    Parameters
+    ----------
+    operations : Operations
+        The operations of the C function in double precision.
+    rates : Program
+        The rates, as :func:`rates_of` reads them.
+    method : Method
+        The method of the step.
+    box : mapping
+        Ranges of the inputs by their places, such as ``"x[0]"`` and ``"dt"``.
+    """
+    rounding = rounding_section(operations, None, box, budget=EVALUATIONS)
+    symbols = _symbols_by_place(step_signature(rates, operations.name))
+    ranges = {}
+    for place, ends in rounding["box"].items():
+        low, high = (Fraction(float.fromhex(end)) for end in ends)
+        ranges[symbols[place]] = (low, high) if (low, high) != ANY else (Fraction(0), Fraction(0))  # it is not used
+    errors = truncation_bounds(rates, method, ranges)
+    return {
+        "meaning": "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from "
+        "the same floating-point start, size and parameters",
+        "truncation": {name: value.hex() for name, value in errors.items()},
+        "rounding": rounding,
+    }
+
+
+def _symbols_by_place(signature: Signature) -> dict[str, str]:
+    """Return a map from the index text of each input, such as ``"x[0]"``, to its symbol."""
+    return {
+        (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
+        for a in signature.arguments
+        if a.role == "in"
+        for i, component in enumerate(a.components)
+    }
+
+
+def formula_section(name: str, rates: Program, method: Method, source: str) -> Data:
+    """Return the section ``formula``: the proof that each C function computes the method; raise CertificateError."""
+    return {f"symrot_{name}{suffix}": _proof(name, rates, method, source, suffix) for suffix in TYPES}
+
+
+def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) -> Data:
+    file, name = f"{step}.c", f"symrot_{step}{suffix}"
+    one = read_kernel(source, name, file)
+    if one.digest() != read_batch(source, f"{name}_batch", file).digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to perform the same operations, got others")
-    degrees = [_degree(step, one, point) for point in range(POINTS)]
+    places = _symbols_by_place(step_signature(rates, step))
+    degrees = [_degree(file, rates, method, places, one, point) for point in range(POINTS)]
     wrong = Fraction(2 * max(degrees), PRIME) ** POINTS
     power = wrong.denominator.bit_length() - wrong.numerator.bit_length() - 1
     return {"type": TYPES[suffix], "operations": one.counts(), "digest": one.digest(), "points": POINTS,
             "wrong_with_probability_below": f"2^-{power}"}  # fmt: skip
 
 
-def _degree(step: StepUnderTest, operations: Operations, point: int) -> int:
-    """Compare C text and formula at one random point; return the largest degree of an output."""
-    places = {
-        (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
-        for a in step.program.signature.arguments
-        if a.role == "in"
-        for i, component in enumerate(a.components)
-    }
+def _degree(
+    file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
+) -> int:
+    """Compare C text and formula at one random point; return the largest degree of an output as a rational function."""
     values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = _exact(operations.precision)
     computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)
-    exact = stepped(step.rates, step.method, values, values["dt"], _RANDOM, number)
+    exact = stepped(rates, method, values, values[SIZE], _RANDOM, number)
     for (place, ours), formula in zip(computed.items(), exact, strict=True):
         if ours.value != _Residue.of(formula).value:
-            raise CertificateError(
-                f"{step.name}.c: expected {place} to be the {step.method.formula}, got another formula"
-            )
+            raise CertificateError(f"{file}: expected {place} to be the {method.formula}, got another formula")
     degrees: list[int] = [each.degree for each in (*computed.values(), *map(_Residue.of, exact))]
     return max(degrees)

@@ -1,4 +1,4 @@
-"""Verdicts on formulas: ``check``, ``check_file`` and ``identify`` are loaded on first use."""
+"""Verdicts on formulas. The functions ``check``, ``check_file`` and ``identify`` are loaded on first use."""
 
 from importlib import import_module
 from typing import Any

@@ -1,4 +1,4 @@
-"""The verdict on one claim: it is decided or recognised by its name, and diagnosed if it is not true."""
+"""The verdict on one claim: the claim is decided, or recognised as a known formula, and diagnosed if it is not true."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -6,6 +6,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from symrot.checker.claim.claims import Claim, relation_text
+from symrot.checker.claim.differentiation import as_functions, is_rule
 from symrot.checker.claim.named_formula import NamedFormula, named_formula, open_formula, related_formula
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
@@ -16,17 +17,18 @@ from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 
-__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "unfinished", "verdict_of_decision"]
+__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision"]
 
 MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
 
 
+ENDED = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
 WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim: on its usual reading, or on another reading if that one alone is true."""
+    """Return the verdict on a claim's usual reading (interpretation), or on another reading if only that is true."""
     try:
         verdict, other = check_readings(claim, repair)
     except RecursionError:
@@ -41,15 +43,16 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on the usual reading of a claim, and the verdict on the first other true reading, or None.
+    """Return the verdict on the usual reading (interpretation) of a claim, and the one on another true reading or None.
 
-    A claim of which no reading (interpretation of its text) is true is diagnosed.
+    If no reading is true, the verdict has a diagnosis.
     """
     start = perf_counter()
     verdict: Verdict | None = None
     try:
         with processor_seconds(MOST_SECONDS):
-            named = _on_name(claim, repair, named_formula) or _on_name(claim, repair, open_formula)
+            named = _on_name(claim, repair, named_formula) or _on_rule(claim)
+            named = named or _on_name(claim, repair, open_formula)
             decision, verdict = named or _decide(claim)
             other_verdict = None if verdict or decision is None else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
@@ -68,15 +71,19 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             late = verdict_of_decision(unfinished(), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            note = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
-            verdict = replace(verdict, notes=(*verdict.notes, note))
+            verdict = replace(verdict, notes=(*verdict.notes, ENDED))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
 
 
+def is_unfinished(verdict: Verdict) -> bool:
+    """Return whether the processor time for a claim was used up before all was tried."""
+    return verdict.reason == unfinished().reason or ENDED in verdict.notes
+
+
 def unfinished() -> Decision:
-    """Return the decision "undecided" on a claim that needs more processor time than it may have."""
+    """Return the decision "undecided" for a claim that would need more processor time than the limit allows."""
     reason = (
         f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
         "check the claim with a letter in place of one of the inner functions"
@@ -85,7 +92,7 @@ def unfinished() -> Decision:
 
 
 def _of_another_reading(claim: Claim) -> Verdict | None:
-    """Return the verdict on the first true reading of a claim other than the usual one; None if there is none."""
+    """Return the verdict on the first true reading (interpretation) of a claim besides the usual one; or None."""
     for relation in claim.alternatives:
         source = relation_text(relation)
         other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
@@ -100,7 +107,8 @@ def _on_name(
 ) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a claim that gives a formula for an undefined quantity; None for other claims.
 
-    The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not decided.
+    The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not
+    decided, so that None stands in the place of a decision.
     """
     if claim.context.sign_of_products == "plus":
         from symrot.checker.context.product_signs import in_claim, with_minus_sign
@@ -139,8 +147,18 @@ def _on_name(
     return None, _completed(claim, replace(verdict, text=claim.text), start)
 
 
+def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
+    """Return (None, verdict) for a rule of differentiation that is decided for all functions; None for other claims."""
+    if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
+        return None
+    decision, verdict = _decide(general)
+    if decision.verdict not in ("true", "conditional") and not (decision.verdict == "false" and is_rule(general)):
+        return None
+    return None, replace(verdict, text=claim.text, notes=general.notes)
+
+
 def _was_near_relation(claim: Claim) -> bool:
-    """Return whether the verdict on the name of a claim compared its whole equation with known relations."""
+    """Return whether :func:`_on_name` has already compared the whole equation with known relations."""
     if claim.relation is None or claim.context:
         return False
     named = related_formula(claim)
@@ -148,7 +166,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict with the diagnosis and the repairs that make a false claim a known relation."""
+    """Return the verdict on a false claim, with repairs that turn the claim into a known relation if there are any."""
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
@@ -156,7 +174,7 @@ def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the relations between rates, momenta and energies, if these decide it."""
+    """Return the verdict that relations between rates, momenta and energies imply; if none does, ``verdict``."""
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.motion import by_motion
@@ -187,7 +205,7 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that names a quantity once its hypotheses are substituted; otherwise None."""
+    """Return (None, verdict) if a claim gives a formula for a quantity after substituting its hypotheses; or None."""
     expanded = claim.expanded
     if expanded is claim or expanded.hypotheses:
         return None
@@ -210,7 +228,7 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 @contextmanager
 def _place_of(claim: Claim) -> Iterator[None]:
-    """Run a block of code; if it raises InputError, put the name of the claim in front of the message."""
+    """Run a block of code; if it raises InputError, put the claim's name in front of the message."""
     try:
         yield
     except InputError as reason:
@@ -220,7 +238,7 @@ def _place_of(claim: Claim) -> Iterator[None]:
 
 
 def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict with the check of units, and with the name and place of the claim."""
+    """Return a verdict with the result of the check of units, and with the name and place of the claim."""
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
@@ -229,7 +247,7 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return the verdict with a diagnosis: the probable fault, or the side that is not defined everywhere."""
+    """Return the verdict with a diagnosis: the probable fault, or a remark that one side is not defined everywhere."""
     if claim.relation is None or is_large(claim.equation):
         return verdict
     if any(requirement.code == "positive_base" for requirement in decision.requires):
@@ -248,7 +266,7 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the remark that one side of a true claim is not defined everywhere, while the other side is."""
+    """Return a remark if one side of a true claim is defined everywhere and the other side is not."""
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
     left, right = (decide_equation(side.equation).conditions for side in sides)

@@ -1,4 +1,4 @@
-"""Signs of a copied text with one plain meaning: thousands, ≈ before a rounded value, braces as brackets, "where"."""
+"""Normalising a copied text: commas in thousands, ≈ before a rounded value, braces used as brackets, and "where"."""
 
 import re
 
@@ -19,7 +19,7 @@ _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
 def with_plain_signs(source: str) -> str:
-    r"""Return a text in which signs that have one plain meaning are written in the usual way.
+    r"""Return a text with ordinary signs in place of signs that can have only one meaning, such as the comma in 1,500.
 
     Examples
     --------
@@ -32,13 +32,13 @@ def with_plain_signs(source: str) -> str:
     """
     text = _THOUSANDS.sub(lambda match: match[0].replace(",", ""), source)
     text = _ROUNDED.sub("=", text)
-    if "\\" not in text and "$" not in text and "{" in text and _FUNCTION.search(text):
+    if "\\" not in text and "$" not in text and "{" in text and (_FUNCTION.search(text) or "∫" in text):
         text = _SUBSCRIPT.sub(r"_\1", text).replace("{", "(").replace("}", ")")
     return _with_definitions_first(text) if "\\" in text or "{" in text else text
 
 
 def _with_definitions_first(text: str) -> str:
-    """Return LaTeX in which definitions after the word "where" come before the formula that uses them."""
+    """Return LaTeX with the definitions after the word "where" moved in front of the formula that uses them."""
     match = _WHERE.search(text)
     if match is None or "=" not in text[: match.start()] or "\\begin" in text:
         return text

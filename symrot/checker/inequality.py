@@ -1,7 +1,8 @@
 """Verdicts on inequalities such as ``x^2 + 1 > 0``, and on the inequalities between moments of inertia.
 
-An inequality is true if its difference is proven to have one sign, and false at an exact point where it has the other.
-One that only restricts the values of a letter, such as ``omega > 2``, is a condition, about which nothing is claimed.
+An inequality is true if the difference of its sides is proven to have one sign, and false if the difference has the
+other sign at an exact point. An inequality that only restricts the values of a letter, such as ``omega > 2``, is a
+condition, about which nothing is claimed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -45,12 +46,12 @@ PLATE = "the body is not a plane plate"
 
 
 def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
-    """Return the verdict on the inequality between the two sides of a claim.
+    """Return the verdict on an inequality whose two sides were read as an equation.
 
     Parameters
     ----------
     claim : Claim
-        The equation of the same two sides, with which the claim was read.
+        The claim with an equals sign in place of the inequality sign.
     sign : str
         The sign of the inequality.
     flipped : str
@@ -80,12 +81,13 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     if (point := _counterexample(claim, difference, strict)) is not None:
         return Verdict("false", counterexample=point)
     return Verdict(
-        "undecided", reason="no proof was found that its difference has one sign, and no point where it fails"
+        "undecided",
+        reason="no proof was found that left minus right has one sign, and no point where it fails",
     )
 
 
 def _is_condition(claim: Claim) -> bool:
-    """Return whether no letter is on both sides, so that the inequality restricts values of its letters."""
+    """Return whether an inequality only restricts values, since no letter is on both of its sides."""
     assert claim.relation is not None
     if claim.hypotheses:
         return False
@@ -106,10 +108,10 @@ def _letters(tree: Node) -> set[str]:
 
 
 def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
-    """Return the verdict on an inequality between the three moments of inertia of a body; None for any other.
+    """Return the verdict on an inequality between the three moments of inertia of a body; None for other inequalities.
 
     With X, Y, Z for the integrals of x^2, y^2, z^2 over the mass, the moments are Y + Z, X + Z and X + Y. These
-    integrals are nowhere negative, and one of them is zero for a plane plate only.
+    integrals are never negative, and one of them is zero only for a plane plate.
     """
     names = {symbol.name for symbol in difference.free_symbols}
     own = next((moments for moments in MOMENTS if names == {*moments}), None)
@@ -133,7 +135,7 @@ def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
 
 
 def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexample | None:
-    """Return an exact point where both sides are defined and the inequality fails; None if none is found."""
+    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none."""
     equation = claim.equation
     if equation.hypotheses or equation.nonzero or equation.bases:
         return None
@@ -152,7 +154,7 @@ def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexam
 
 
 def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
-    """Yield points with simple values, those that are allowed by the signs of the symbols."""
+    """Yield points with simple values that have the signs which are assumed for the symbols."""
     allowed = [
         [v for v in VALUES if not (s.is_positive and v <= 0) and not (s.is_nonnegative and v < 0)] for s in symbols
     ]
@@ -170,5 +172,5 @@ def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
 
 
 def is_inequality(signs: tuple[str, ...]) -> bool:
-    """Return whether the signs of a line are the one sign of an inequality."""
+    """Return whether the relation signs of a line are a single inequality sign."""
     return len(signs) == 1 and signs[0] in OPPOSITE

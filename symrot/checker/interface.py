@@ -31,7 +31,7 @@ class RefusedClaims(InputError):
     Attributes
     ----------
     verdicts : list of Verdict
-        The verdicts on all claims, ``"refused"`` on those that cannot be read.
+        The verdicts on all claims; the verdict is ``"refused"`` for a claim that cannot be read.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def check(
     Parameters
     ----------
     left : str, Expr or Matrix
-        The whole claim as text, ``"left == right"`` in the language of claims or LaTeX (text with a backslash): names
+        The whole claim as text, ``"left == right"`` in SymPy syntax, as typed, or in LaTeX (with a backslash): names
         are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy value.
@@ -76,7 +76,7 @@ def check(
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str
-        What names of a text mean, in words: ``"I = moment of inertia about the centre"``. With such a context, a claim
+        The meanings of names, in words: ``"I = moment of inertia about the centre"``. With this context, a claim
         that only names a quantity is decided.
     body : str
         The body in words, ``"solid cylinder of radius r"``.
@@ -155,7 +155,7 @@ def _checked(
 
 
 def _without_backticks(source: str) -> str:
-    """Return a text without the backticks around it, with which posts mark formulas."""
+    """Return a text without the backticks around it; web posts put them around formulas."""
     bare = source.strip()
     return bare.strip("`") if len(bare) > 1 and bare[0] == bare[-1] == "`" else source
 
@@ -163,7 +163,7 @@ def _without_backticks(source: str) -> str:
 def _on_latex(
     source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool, stated: Context
 ) -> Verdict:
-    """Return the verdict on a text in LaTeX, with its reading and its repairs in LaTeX."""
+    """Return the verdict on a text in LaTeX; its reading (interpretation) and its repairs are written in LaTeX too."""
     from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation

@@ -1,4 +1,4 @@
-"""The language of claims in tables: the source of ``symrot check --help`` and of the page for checkers."""
+"""The notation for claims, as tables: the source of ``symrot check --help`` and of docs/checkers.md."""
 
 import textwrap
 import tomllib
@@ -10,8 +10,8 @@ from typing import Any
 __all__ = ["functions", "help_text", "markdown_table", "tables"]
 
 INTRODUCTION = """\
-Three notations are read: SymPy's text, LaTeX (text with a backslash, a brace or a dollar sign), and plain text as
-people type it. SymPy's text, with ** and ==, has one meaning and keeps it. A text with two readings gets the
+Three notations are read: SymPy syntax, LaTeX (text with a backslash, a brace or a dollar sign), and plain text as
+people type it. SymPy syntax, with ** and ==, has one meaning and keeps it. A text with two readings gets the
 verdict on the usual one, and a note on the other one if its verdict differs."""
 
 BUDGET = """\
@@ -33,7 +33,7 @@ def functions() -> tuple[str, ...]:
 
 
 def tables() -> dict[str, list[list[str]]]:
-    """Return the tables of the language by title. The first row of each is its head, and cells are Markdown."""
+    """Return the tables that describe the notation, by title. The first row of each is its head; cells are Markdown."""
     return {table["title"]: table["rows"] for table in _source().values() if isinstance(table, dict)}
 
 
@@ -52,12 +52,12 @@ def markdown_table(rows: Sequence[Sequence[str]]) -> str:
 
 
 def help_text() -> str:
-    """Return the description of the language as plain text, for the command line."""
+    """Return the description of the notation as plain text, for the command line."""
     parts = [textwrap.fill(INTRODUCTION, WIDTH)]
     for title, rows in tables().items():
         parts.append("\n".join([f"{title}:", *_plain_rows(rows[1:])]))
     parts.append(textwrap.fill(f"Built-in functions: {', '.join(functions())}.", WIDTH))
-    return "\n\n".join([*parts, textwrap.fill(BUDGET, WIDTH)]).replace("%", "%%")
+    return "\n\n".join([*parts, textwrap.fill(BUDGET, WIDTH)])
 
 
 def _plain_rows(rows: Sequence[Sequence[str]]) -> Iterator[str]:

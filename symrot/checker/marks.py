@@ -1,4 +1,4 @@
-"""The part of a repair that differs from the claim: found in the two texts, and marked in text, LaTeX and HTML."""
+"""Marking the differences between a claim and its repair, in plain text, LaTeX and HTML."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -19,7 +19,9 @@ TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\W\d]\w*|\d+(?:\.\d+)?|\*\*|==|\s+|.", re
 
 
 def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
-    """Return the positions of the pieces of a repair that differ from the claim; for a gap, of the sign next to it.
+    """Return the positions (start, end) in a repair's text that differ from the claim.
+
+    Where the repair has left out something, the sign next to the gap is marked.
 
     Examples
     --------
@@ -44,7 +46,7 @@ def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
 
 
 def changed_entry(relation: Relation, repaired: str) -> tuple[int, int] | None:
-    """Return the only entry of a matrix in which a repaired equation differs from an equation, or None."""
+    """Return (row, column) of the only matrix entry that a repair changes; None if it changes anything else."""
     try:
         other = read_relation(repaired.partition(" with ")[0])
     except InputError:
@@ -66,20 +68,20 @@ def changed_entry(relation: Relation, repaired: str) -> tuple[int, int] | None:
 
 
 def _rows(side: Node) -> list[tuple[Node, ...]] | None:
-    """Return the rows of a matrix that is written with its entries, or None."""
+    """Return the rows of a matrix that is written with all its entries, otherwise None."""
     if side.kind != "call" or side.value != "Matrix" or side.args[0].kind != "list":
         return None
     return [row.args if row.kind == "list" else (row,) for row in side.args[0].args]
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:
-    """Return a line of carets for the marked pieces of a text between two positions; empty if there are none."""
+    """Return a line with a caret under each marked character of a text between two positions, for a terminal."""
     marks = (any(first <= place < last for first, last in spans) for place in range(start, end))
     return "".join("^" if mark else " " for mark in marks).rstrip()
 
 
 def html_with_marks(text: str, spans: Sequence[Span]) -> str:
-    """Return a text as HTML with its marked pieces in ``<mark>``.
+    """Return a text as HTML with the marked positions in ``<mark>``.
 
     Examples
     --------
@@ -90,7 +92,7 @@ def html_with_marks(text: str, spans: Sequence[Span]) -> str:
 
 
 def latex_with_marks(text: str, spans: Sequence[Span]) -> str:
-    r"""Return LaTeX with its marked pieces underlined; the text itself if a piece is no formula of its own.
+    r"""Return LaTeX with the marked parts underlined; if a part is no complete formula, return the text unchanged.
 
     Examples
     --------
@@ -103,7 +105,7 @@ def latex_with_marks(text: str, spans: Sequence[Span]) -> str:
 
 
 def _is_formula(piece: str) -> bool:
-    """Return whether a piece of LaTeX has all of its brackets and nothing that belongs to a larger formula."""
+    """Return whether a part of a LaTeX text is complete: its brackets match, and it ends with no open command."""
     depth = 0
     for token in TOKEN.findall(piece):
         depth += (token in ("{", "\\left")) - (token in ("}", "\\right"))
@@ -115,7 +117,7 @@ def _is_formula(piece: str) -> bool:
 
 
 def _stands_alone(text: str, start: int, end: int) -> bool:
-    """Return whether a piece of LaTeX is not an index, an exponent, a base or the argument of a command."""
+    """Return whether a part of a LaTeX text is no index, exponent or base, and no argument of a command."""
     before, after = text[:start].rstrip(), text[end:].lstrip()
     if re.search(r"([\^_]|\\(?!\\)[A-Za-z]+\{?|\}\{)$", before) and not before.endswith(("\\cdot", "\\times")):
         return before.endswith("{") and after.startswith("}")

@@ -30,7 +30,7 @@ TURN = 7
 
 
 def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return the verdict on a claim with a name for each product of units.
+    """Return the verdict on a claim in which a name stands for each product of units.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return the diagnosis and the repair of an equation whose right side is a whole number with its unit."""
+    """Return the diagnosis and the repair of a false equation whose right side is a whole number with a unit."""
     left, right = sides
     digits, unit = _decimal(right, measured.text, r"\d+")
     try:
@@ -82,14 +82,14 @@ def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], mea
 
 
 def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
-    """Return a tree with the factors of units in place of their names."""
+    """Return a tree in which the factors to SI units replace the names of the units."""
     if tree.kind == "name" and tree.value in factors:
         return factors[str(tree.value)]
     return replace(tree, args=tuple(_in_si(child, factors) for child in tree.args))
 
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
-    """Return the verdict on an equation with a decimal number and its unit as a side, by rounding; None for others."""
+    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations."""
     verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
@@ -113,13 +113,13 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
 
 
 def _is_irrational(claim: Claim, value: Node) -> bool:
-    """Return whether a number is irrational: then a whole number can equal it only by rounding."""
+    """Return whether a number is irrational, so that a whole number can equal it only after rounding."""
     number_of_unit = claim.interpreter().read(value)
     return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return the verdict on a value that is printed with digits and a unit, on the left or right side of a text."""
+    """Return the verdict that compares a value with the rounded number printed for it on one side of a text."""
     digits = worked.printed
     decision = decide_value(worked)
     if decision.verdict == "true":
@@ -137,7 +137,7 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return the repair that puts the right number before its unit, on the left or right side of a text."""
+    """Return, in a tuple, the repair that puts the right number before its unit on one side of a text."""
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
         return ()
@@ -146,7 +146,7 @@ def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool
 
 
 def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
-    """Return the digits, of a pattern, and the unit of a number with a unit; empty texts for any other tree."""
+    """Return (digits, unit) of a number with a unit whose digits match a pattern; empty texts for any other tree."""
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
     first, unit = tree.args
@@ -155,7 +155,7 @@ def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return the verdict with a note, or a diagnosis, on angles that are plain numbers and may be in degrees."""
+    """Return the verdict with a remark on angles that are plain numbers and may be meant in degrees."""
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation
@@ -180,14 +180,14 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is a circular function of a number that is probably in degrees."""
+    """Return whether a tree is a sine or the like of a number that is so large that it is probably in degrees."""
     return (
         node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
     )
 
 
 def _degrees(tree: Node) -> Node:
-    """Return a tree in which large angles are taken as degrees and converted to radians."""
+    """Return a tree in which large angles are treated as degrees and converted to radians."""
     args = tuple(map(_degrees, tree.args))
     if _is_large_angle(tree):
         args = (product([tree.args[0], Node("name", "pi"), number(Fraction(1, 180))]),)

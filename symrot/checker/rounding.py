@@ -15,8 +15,8 @@ __all__ = ["rounded_value", "with_rounding"]
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim that equates a value and a decimal number to which the value rounds.
 
-    If the value does not round to the number, a note gives the correct digits. Every other verdict is returned
-    unchanged.
+    If the value does not round to the number, the diagnosis gives the correct digits. Every other verdict is
+    returned unchanged.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict
@@ -29,7 +29,7 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def rounded_value(claim: Claim) -> str:
-    """Return the value of a worked number, rounded to the digits that are printed for it, or an empty text.
+    """Return the value of a worked number as text, rounded to as many digits as the document prints.
 
     The text is empty if the value is not known well enough, or if the printed number has a power of ten.
     """
@@ -43,14 +43,14 @@ def rounded_value(claim: Claim) -> str:
 
 
 def _decimal(node: Node, source: str) -> str:
-    """Return the digits, as typed, of a tree that is a decimal number; an empty text for any other tree."""
+    """Return the digits of a tree that is a decimal number, as they were typed; an empty text for any other tree."""
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
     return sign + digits if inner.kind == "number" and "." in digits else ""
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of a whole number that is certainly rounded, such as 157 for ``1500*2*pi/60``; or "".
+    """Return the digits of a whole number that must be rounded, such as 157 for ``1500*2*pi/60``; otherwise "".
 
     It has at least three digits, the last one not 0, and the value has pi, a root or a decimal number.
     """

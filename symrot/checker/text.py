@@ -1,12 +1,13 @@
-"""The verdict on a text as people type it, on its usual interpretation (reading).
+"""The verdict on a text as people type it, by its usual reading (interpretation).
 
-A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided link by link, and several
-lines are decided one by one; a line that gives a name to a formula defines the name for the lines after it.
+A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided equation by equation, and
+several lines one by one; a line that gives a name to a formula defines the name for the lines after it.
 """
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
@@ -17,11 +18,12 @@ from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim_verdict import MOST_SECONDS, check_claim
+from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
+from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.typed.cursor import TIME
@@ -48,6 +50,7 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
+ZERO = Node("number", Fraction(0))
 
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
@@ -92,7 +95,7 @@ def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on the usual reading of a text, with a note on every other reading whose verdict differs.
+    """Return the verdict on the usual reading (interpretation) of a text, with notes on readings whose verdict differs.
 
     ``notation`` returns the notation in which the formulas of a reading are written.
 
@@ -105,7 +108,7 @@ def verdict_on_readings(
     refusal: InputError | None = None
     late = False
     for reading in readings:
-        late = late or sum(verdict.seconds for _, verdict in verdicts) > MOST_SECONDS
+        late = any(is_unfinished(verdict) for _, verdict in verdicts)
         if late:
             break
         try:
@@ -135,18 +138,18 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(f"other readings were not decided, since this one took more than {MOST_SECONDS} s")
+        notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
-    """Return whether the verdict on a reading is that it may be a definition."""
+    """Return whether the verdict on a reading is "definition": nothing known is like its formula."""
     return reading[1].verdict == "definition"
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return the verdict on a text read as letters, or "definition" if it has both letters and numbers with units.
+    """Return the verdict, or "definition" for a text that has both letters and numbers with units.
 
     Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
     """
@@ -170,7 +173,7 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units: on its reading that is true, or whose units fit.
+    """Return the verdict on a text whose numbers have units: on the reading that is true, or whose units fit.
 
     Raises
     ------
@@ -224,12 +227,12 @@ def _on_units(
 
 
 def names_of(reading: Reading) -> set[str]:
-    """Return the names in a reading, with ``d`` in front for a rate."""
+    """Return the names in a reading; a rate has a ``d`` in front of its name."""
     return {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
-    """Return the sentence that reports the verdict on a reading of the text other than the usual one."""
+    """Return the sentence that reports the verdict on a reading other than the usual one."""
     places = reading.flipped or usual.flipped
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)
@@ -250,14 +253,14 @@ def verdict_on_reading(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on one reading of a text: on its only equation, or on all of its links and lines.
+    """Return the verdict on one reading of a text: on its only equation, or on all equations of its chains and lines.
 
-    ``notation`` is the notation of the text, in which formulas are written, and ``stated`` its context.
+    ``notation`` is the notation in which formulas are written, and ``stated`` the context that the user states.
     """
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
-    parts = [(claim, _on_claim(claim, notation, repair)) for line in lines for claim in line]
+    parts = [(claim, _on_claim(claim, notation, repair, reading.plain)) for line in lines for claim in line]
     several = len(parts) > 1
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
     if several and verdict.verdict == "conditional":
@@ -280,7 +283,7 @@ def _on_inequality(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
     stated: Context,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on a reading that is one inequality."""
+    """Return the verdict on a reading that consists of one inequality."""
     (chain,) = reading.lines
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
@@ -296,14 +299,17 @@ def _on_inequality(
 
 
 def _differs(echo: str, source: str) -> bool:
-    """Return whether two texts differ in more than blanks."""
+    """Return whether the claim as it was read differs from the typed text in more than blanks."""
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
-def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
+def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
+    """Return the verdict on one equation; in a ``plain`` text, which is not SymPy's, = may mean a condition."""
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
+    verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
@@ -314,12 +320,43 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool) -> Verdict:
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
     )
-    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict))
+    notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict), *_on_zero_powers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
 
 
+def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on ``L = T - V`` after lines in which L is a length: L is then the name of two quantities."""
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
+    if left.kind != "name" or not others or name in dict(claim.define) or left in [node for _, node in walk(right)]:
+        return verdict
+    define = tuple((own, _with_name(tree, name, f"{name}_1")) for own, tree in claim.define)
+    other = check_claim(replace(claim, define=define), repair=False)
+    if other.verdict == "false":
+        return verdict
+    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
+    return replace(other, notes=(*other.notes, note))
+
+
+def _with_name(tree: Node, old: str, new: str) -> Node:
+    """Return a tree with another name in place of one name."""
+    if tree.kind == "name" and tree.value == old:
+        return replace(tree, value=new)
+    return replace(tree, args=tuple(_with_name(part, old, new) for part in tree.args))
+
+
+def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
+    """Return a note on the convention by which a true claim with ``x^0`` holds for x = 0 too."""
+    sides = claim.relation[1:] if claim.relation else ()
+    nodes = [node for side in sides for _, node in walk(side)]
+    powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == ZERO]
+    is_open = any(base.kind != "number" or not base.value for base in powers)
+    return ("0^0 is read as 1, by the convention of algebra",) if is_open and verdict.verdict == "true" else ()
+
+
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return a note on capital letters in a true claim that could be matrices: they commute only as numbers."""
+    """Return a note on a true claim that exchanges capital letters: it may be false if these are matrices."""
     if verdict.verdict != "true" or claim.relation is None:
         return ()
     known = {*dict(claim.define), *claim.symbols}
@@ -337,7 +374,7 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
-    """Return a repair in the notation of the claim, with the pieces that differ from the claim."""
+    """Return a repair in the notation of the claim, with the positions at which it differs from the claim."""
     text = notation.rewritten(repair.text)
     if claim.relation is None:
         return replace(repair, text=text)
@@ -346,9 +383,10 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that is false for any matrices: conditional if it is true for rotations.
+    """Return the verdict "conditional" for a claim that is false for general matrices but true for rotation matrices.
 
-    Each matrix that suffices by being a rotation is an alternative; if no single one does, all of them have to be.
+    If one of several matrices suffices by being a rotation, each such matrix is an alternative condition; if none
+    does, all of them have to be rotations. Any other claim has its verdict unchanged.
     """
     names = matrices_of_entries(claim.define)
     groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
@@ -367,7 +405,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k``: other names share a pair's index."""
+    """Return whether a claim is in index notation: as in ``I_ik = m*a_i*a_k``, indices of a pair occur alone too."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -377,7 +415,7 @@ def _has_indices(claim: Claim) -> bool:
 def _on_parts(
     lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
 ) -> Verdict:
-    """Return the verdict on a chain or on several lines: the worst verdict on a part, and a note on each part.
+    """Return the verdict on a chain or several lines: the worst verdict on any of their equations, and a note on each.
 
     ``units`` are the names that stand for units.
     """
@@ -419,9 +457,10 @@ def _on_parts(
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several conditional equations, with the conditions of all equations.
+    """Return the verdict on several conditional equations, with the conditions of all of them.
 
-    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own condition.
+    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own
+    condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
@@ -433,10 +472,10 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the links of a chain ``name = a = b``.
+    """Return the verdicts on the equations of a chain ``name = a = b``.
 
-    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
-    L^2/(2*I) of one body are equal because of what L means. Such a link is decided as ``name = b``.
+    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2
+    and L^2/(2*I) of one body are equal because of what L means. Then ``name = b`` is decided in place of ``a = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

@@ -1,8 +1,8 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-Two rules tell an error of a document from a character that the extraction lost. Another reading of the text may change
-what is printed, never the result that it is measured against. And the extraction may be the cause only if the printed
-formula and the true one differ in nothing but characters of the kinds that were lost at this place.
+Two rules tell an error of a document from a loss in extraction. Another reading of the text may change what is printed,
+but not the result that it is compared with. And a loss may be the cause only if the printed formula and the true one
+differ in nothing but characters of the kinds that were lost at this place.
 """
 
 from collections import Counter
@@ -49,11 +49,11 @@ class Finding:
     outcome : str
         A key of ``OUTCOMES``.
     reading : str
-        Another reading of the text that holds, else empty.
+        Another reading of the printed text that is true; otherwise empty.
     right : str
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
-        The trees of the claim by place, and the corrected trees.
+        The trees of the claim by place (side or name of a definition), and the corrected trees.
     is_proposed : bool
         Whether the corrected formula was proposed by a person, and not found by the search for repairs.
     conditions : tuple of str
@@ -76,7 +76,7 @@ class Finding:
 
     @property
     def reason(self) -> str:
-        """Why the claim is not simply true."""
+        """A sentence that says why the claim is not simply true."""
         if self.outcome == "conditional":
             return "true if " + " or ".join(self.conditions)
         if self.verdict.diagnosis.code != "none":
@@ -87,7 +87,7 @@ class Finding:
 def findings(
     document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Finding]:
-    """Yield the result of checking each claim of a document, in the order of the document."""
+    """Yield the result of checking each claim of a document, in order."""
     proposals = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
     unstated = {condition.claim: condition for condition in conditions()}
     for claim in read_claims(document.path):
@@ -99,10 +99,10 @@ def findings(
 def finding_of(
     data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str], condition: Condition | None = None
 ) -> Finding:
-    """Return the result of checking one claim with its ``data``.
+    """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    The proposed correction may be empty. A claim that is false, but true under the proposed ``condition``, is
-    conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
+    The ``proposal`` of a correction may be empty. A claim that is false, but true under the proposed ``condition``,
+    is conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -135,10 +135,10 @@ def finding_of(
 
 
 def _may_be_broken(condition: str) -> bool:
-    """Return whether quantities with their usual signs may break a condition.
+    """Return whether a condition can fail although all quantities have their usual signs.
 
-    Such a condition is about an angle, as ``sin(theta) != 0`` is, or is an inequality with a difference or between two
-    quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment of inertia is positive by its meaning.
+    Such a condition is about an angle, as ``sin(theta) != 0`` is, or is an inequality with a difference or between
+    two quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment of inertia is positive by its meaning.
     """
     sign, *trees = read_relation(condition)
     sides = [[node for _, node in walk(tree)] for tree in trees]
@@ -151,7 +151,7 @@ def _may_be_broken(condition: str) -> bool:
 
 
 def _prove(claim: Claim, condition: Condition) -> None:
-    """Raise InputError for a condition under which the exact engine does not prove the claim."""
+    """Raise InputError if the exact engine does not prove the claim under the condition."""
     declared = Declared({*claim.symbols, *(name for name, _ in claim.define)}, claim.functions)
     hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
     if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
@@ -160,7 +160,7 @@ def _prove(claim: Claim, condition: Condition) -> None:
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
-    """Return the corrected parts of a claim, by place: a proven proposal or the nearest repair; empty without these.
+    """Return the corrected parts of a claim, by place: the proven proposal, or else the nearest repair, or nothing.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> 
 
 
 def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
-    """Return a function that removes the outermost piece of a tree if it is of one of the kinds."""
+    """Return a function that maps a node of one of the kinds to its first argument, and any other node to itself."""
     return lambda node: node.args[0] if node.kind in kinds else node
 
 
@@ -216,7 +216,7 @@ lost with them."""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether a relation is another reading of the printed text of a claim."""
+    """Return whether an equation differs from a claim only by characters that were lost in its printed side."""
     assert claim.relation is not None
     return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)
 
@@ -240,7 +240,7 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula without the characters, of the kinds ``lost``, that an extraction loses."""
+    """Return a formula as a lossy extraction would print it: without the kinds of characters in ``lost``."""
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node
@@ -250,6 +250,6 @@ def _extracted(node: Node, lost: Collection[str]) -> Node:
 
 
 def _letters(tree: Node) -> list[Any]:
-    """Return the letters, numbers, signs and bars of a formula in the order in which they are read."""
+    """Return the letters, numbers, signs and bars of a formula in reading order."""
     kinds = ("name", "number", "call", "neg", "inv", "transpose")
     return [(node.kind, node.value) for _, node in walk(tree) if node.kind in kinds]

@@ -1,4 +1,4 @@
-"""A limit on the processor time of a computation that spends it inside SymPy, where nothing can be counted."""
+"""A limit on the processor time of a computation inside SymPy, whose steps cannot be counted from outside."""
 
 import signal
 from collections.abc import Iterator
@@ -20,9 +20,9 @@ class TimeUp(BaseException):
 
 @contextmanager
 def processor_seconds(limit: float) -> Iterator[None]:
-    """Raise TimeUp in the block when the process has computed for ``limit`` seconds since the block began.
+    """Raise TimeUp inside a ``with`` block when the process has computed for ``limit`` seconds since the block began.
 
-    The limit needs the timer of processor time of the operating system (``ITIMER_PROF``) and the main thread. Without
+    The limit needs the operating system's timer of processor time (``ITIMER_PROF``) and the main thread. Without
     them, inside another limit, or if the program uses that timer itself, the block runs without a limit of its own.
     """
     if not _timer_is_free():

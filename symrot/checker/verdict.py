@@ -17,7 +17,7 @@ class Diagnosis:
     Attributes
     ----------
     code : str
-        Key of the table of faults, such as ``"factor"``; ``"none"`` without a fault.
+        A short name of the kind of fault, such as ``"factor"``; ``"none"`` if there is no fault.
     text : str
         One sentence.
 
@@ -42,7 +42,7 @@ class Repair:
     text : str
         The formula.
     code : str
-        Key of the table of faults.
+        A short name of the kind of fault that the repair corrects, such as ``"factor"``.
     cost : float
         The distance from the claim: a smaller cost means a nearer formula.
     proven : bool
@@ -50,7 +50,7 @@ class Repair:
     edited : dict of str to str
         The changed parts of the claim, ``"left"``, ``"right"`` or the name of a definition, with their new text.
     changed : tuple of (int, int)
-        Start and end of each piece of the text that differs from the claim.
+        Start and end of each part of the text that differs from the claim.
     entry : (int, int) or None
         Row and column, from 1, of the only entry that differs, if a side is a matrix.
     requires : str
@@ -77,24 +77,24 @@ class Repair:
 
     @property
     def html(self) -> str:
-        """The text as HTML, with the pieces that differ from the claim in ``<mark>``."""
+        """The repair as HTML, with the parts that differ from the claim in ``<mark>``."""
         return html_with_marks(self.text, self.changed)
 
     @property
     def latex(self) -> str:
-        """The text of a repair in LaTeX, with the pieces that differ from the claim underlined."""
+        """The repair in LaTeX, with the parts that differ from the claim underlined."""
         return latex_with_marks(self.text, self.changed)
 
     @property
     def note(self) -> str:
-        """The code of the fault in brackets, the entry of a matrix that differs, and the range in which it holds."""
+        """The code of the fault in brackets, the matrix entry that differs, and the range in which the repair holds."""
         entry = f", entry {self.entry}" if self.entry else ""
         return f"[{self.code}{entry}{f', if {self.requires}' * bool(self.requires)}]"
 
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The result of the check of a claim's units.
+    """The result of checking the units in a claim.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ class Dimensions:
     text : str
         Where the units do not fit.
     units : dict of str to str
-        Units that follow for names that came without a unit.
+        Units that the claim implies for names without a stated or conventional unit.
 
     Examples
     --------
@@ -119,13 +119,13 @@ class Dimensions:
 
 @dataclass(frozen=True, repr=False)
 class Identification:
-    """A known formula to which a formula has been proven equal.
+    """A known formula to which a formula was proven equal.
 
     Attributes
     ----------
     name : str
     how : str
-        The change of the formula under which it is equal: ``""`` for none, ``"transposed"``,
+        The change that makes the formulas equal: ``""`` for no change, ``"transposed"``,
         ``"with the other sign"``.
     mapping : dict
         Symbol of the known formula -> symbol of the formula, where their names differ.
@@ -149,7 +149,7 @@ class Identification:
 
     @property
     def renaming(self) -> str:
-        """The pairs of symbols with different names as text, ``"with a for dphi"``; empty if all names agree."""
+        """The symbols that have other names in the claim, as text: ``"with a for dphi"``; empty if all names agree."""
         pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
         return f"with {pairs}" if pairs else ""
 
@@ -201,9 +201,9 @@ class Verdict:
     seconds : float
         The time that the check took.
     reading : str
-        The claim as it was read, in the notation of the input; empty if it is no different from the text.
+        The claim as it was read, in the notation of the input; empty if that is the same as the text.
     context : str
-        What is stated in words about names, body, frame and sequence, as it was understood.
+        The user's statements in words about names, body, frame and sequence, as they were understood.
 
     Examples
     --------
@@ -231,7 +231,7 @@ class Verdict:
 
     @property
     def entry(self) -> tuple[int, int] | None:
-        """The entry of a matrix in which the sides differ, (row, column) from 1."""
+        """The matrix entry in which the sides differ, (row, column) from 1; None if there is none."""
         return self.counterexample.entry if self.counterexample else None
 
     def __bool__(self) -> bool:
@@ -247,7 +247,7 @@ class Verdict:
         return symrot.in_notebook(self)
 
     def facts(self) -> list[tuple[str, str]]:
-        """Return everything else that the verdict says, for printing, as pairs (name, text)."""
+        """Return all that the verdict says besides ``verdict`` itself, as pairs (name, text) for printing."""
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         near = self.verdict == "doubtful"

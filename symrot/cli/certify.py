@@ -40,7 +40,7 @@ def _bound(options: Namespace) -> int:
     report: symrot.RoundingBounds | symrot.LargestBox
     if options.target is None:
         if options.variable:
-            raise InputError("--variable: expected --target X as well, since only that search resizes ranges")
+            raise InputError("--variable: expected --target X as well, since only the search for a box changes ranges")
         report = symrot.bound(options.kernel, options.box, options.precision)
     else:
         report = symrot.largest_box(
@@ -55,8 +55,8 @@ def _certify(options: Namespace) -> int:
     if options.all:
         from symrot.workshop import certify as certificates
 
-        if options.kernel or options.box or options.no_bounds:
-            raise InputError("certify: expected --all without a KERNEL, --box or --no-bounds "
+        if options.kernel or options.box or options.no_bounds or options.step:
+            raise InputError("certify: expected --all without a KERNEL, --box, --step or --no-bounds "
                              "(see `symrot certify --help`)")  # fmt: skip
         every, written = certificates.certify_all(options.directory, options.objects, progress)
         progress("")
@@ -66,7 +66,7 @@ def _certify(options: Namespace) -> int:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
     certificate = symrot.certify(
         options.kernel, options.box, directory=options.directory, objects=options.objects,
-        rounding=not options.no_bounds, progress=progress,
+        rounding=not options.no_bounds, step=options.step, order=options.order, progress=progress,
     )  # fmt: skip
     progress("")
     say_json(certificate.data) if options.json else say([str(certificate), *map(str, certificate.files)])
@@ -107,7 +107,7 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds need, so that contraction (a*b + c rounded once) is accepted",
+        help="test only what the error bounds need: they allow that a*b + c is rounded only once",
     )
     json_option(parser)
 
@@ -119,9 +119,11 @@ def _bound_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input, such as theta=-1.4:1.4 (default: the kernel's own range), or of a "
                         "physical constant of a scene, such as A=1:2; may be repeated")  # fmt: skip
-    parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
+    parser.add_argument(
+        "--target", type=float, metavar="X", help="find the largest ranges of inputs for which no error is above X"
+    )
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
-                        help="with --target: resize the range of this input only; may be repeated")  # fmt: skip
+                        help="with --target: change the range of this input only; may be repeated")  # fmt: skip
     parser.add_argument(
         "--precision", choices=("double", "float"), default="double", help="type of the numbers (default: double)"
     )
@@ -135,6 +137,9 @@ def _certify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input for the bounds of rounding errors, or of a physical constant of a "
                         "scene; may be repeated")  # fmt: skip
+    parser.add_argument("--step", metavar="METHOD", help="certify one time step of a scene: rk4, taylor or dop853; "
+                        "with --box for its states and dt, bound rounding and truncation")  # fmt: skip
+    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
     parser.add_argument(
         "--objects", action="store_true", help="compile the kernel, and compare the object code with the C text"
     )
@@ -149,10 +154,12 @@ def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json",
                         help="a certificate, in one folder with the files of its kernel")  # fmt: skip
     parser.add_argument(
-        "--object", type=Path, metavar="FILE.o", help="compare the object file that your compiler made from the C file"
+        "--object", type=Path, metavar="FILE.o", help="check the object file that your compiler made from the C file"
     )
     parser.add_argument(
-        "--flags", metavar="'CC FLAGS'", help="say what still holds under your flags, such as 'gcc -O3 -mfma'"
+        "--flags",
+        metavar="'CC FLAGS'",
+        help="your compiler flags, such as 'gcc -O3 -mfma': print what still holds with them",
     )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")
@@ -163,7 +170,7 @@ COMMANDS: dict[str, Command] = {
     "prove": ("print the kinematics as theorems, and have Coq check them", _prove, _prove_arguments),
     "certify": ("certify a kernel: laws, C text, rounding errors, object code", _certify, _certify_arguments),
     "audit": ("check that a certificate holds for the files in its folder", _audit, _audit_arguments),
-    "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
+    "bound": ("bound the rounding errors of a kernel for inputs in given ranges", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
 }
 """As in :data:`symrot.cli.main.COMMANDS`."""

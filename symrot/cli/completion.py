@@ -27,11 +27,14 @@ NAMES: Mapping[str, Callable[[], Iterable[str]]] = {
     "method": lambda: METHODS,
     "textbook": lambda: DOCUMENTS,
 }
-"""Name of an argument -> function that returns the names it may have; files may follow too."""
+"""Name of an argument -> function that returns the names that the argument accepts, besides files."""
 
 
 def completers(parser: ArgumentParser) -> dict[str, Action]:
-    """Return the arguments of a parser and its commands whose names can be completed, each with a completer."""
+    """Give a completer to each argument that takes a name, such as SCENE; return these arguments by their names.
+
+    The arguments of all subcommands of the parser are included.
+    """
     from argcomplete.completers import FilesCompleter
 
     known: dict[str, Action] = {}
@@ -46,7 +49,7 @@ def completers(parser: ArgumentParser) -> dict[str, Action]:
 
 
 class _Names:
-    """A completer: the names that begin with what was typed, and files."""
+    """Function that completes a word typed in a shell: to names that begin with the word, and to files."""
 
     def __init__(self, names: Callable[[], Iterable[str]], files: Any) -> None:
         self.names, self.files = names, files
@@ -56,7 +59,10 @@ class _Names:
 
 
 def complete(parser: ArgumentParser) -> None:
-    """Print the words that may follow, and end the process, if a shell asks for them and argcomplete is installed."""
+    """Answer a shell that asks for completions of a command line: print them and end the process.
+
+    In a normal run, or if argcomplete is not installed, the function does nothing.
+    """
     try:
         from argcomplete import autocomplete
     except ImportError:

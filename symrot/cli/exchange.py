@@ -25,10 +25,10 @@ def _inertia(options: Namespace) -> int:
     of_mesh = {key: getattr(options, key) for key in ("mass", "density", "scale") if getattr(options, key) is not None}
     if Path(path).suffix.lower() in SUFFIXES:
         if name:
-            raise InputError(f"{options.file}: expected a mesh without the name of a link, got {name!r}")
+            raise InputError(f"{options.file}: expected a path without a link, since a mesh has no links, got {name!r}")
         return _print(mesh(path, **of_mesh, flip=options.flip), options)
     if of_mesh or options.flip:
-        raise InputError("inertia: expected --mass, --density, --scale and --flip with a mesh only, got a robot file")
+        raise InputError("inertia: --mass, --density, --scale and --flip are options for a mesh, got a robot file")
     if not name and not options.toml:
         every = robot.links(path)
         if len(every) > 1:
@@ -41,7 +41,10 @@ def _inertia(options: Namespace) -> int:
 
 
 def _path_and_link(text: str) -> tuple[str, str]:
-    """Return the path and the name in ``FILE:LINK``; a file whose own name has a colon comes first."""
+    """Return the path and the name of the link in the text ``FILE:LINK``; the name may be missing.
+
+    If there is a file whose name is the whole text, with its colon, the text is the path of this file.
+    """
     path, colon, name = text.rpartition(":")
     return (path, name) if colon and path and not Path(text).is_file() else (text, "")
 
@@ -64,7 +67,7 @@ def _inertia_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--mass", metavar="X", help="mass of a mesh, kg")
     parser.add_argument("--density", metavar="X", help="density of a mesh, kg/m^3: a number or a polynomial in x, y, z")
-    parser.add_argument("--scale", metavar="X", help="length of the unit of a mesh, m: 1/1000 for mm (default: 1)")
+    parser.add_argument("--scale", metavar="X", help="unit of length of a mesh in m: 1/1000 for mm (default: 1)")
     parser.add_argument("--flip", action="store_true", help="reverse the triangles of a mesh that is turned inside out")
     parser.add_argument("--toml", action="store_true", help="print the table [body] of a scene")
     json_option(parser)

@@ -63,10 +63,14 @@ _whole.__name__ = "whole number"
 
 def _exercise_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "topic", metavar="TOPIC", nargs="?", default="", help="a topic or a template (default: all in turn)"
+        "topic",
+        metavar="TOPIC",
+        nargs="?",
+        default="",
+        help="a topic, or the template of one exercise (default: all in turn)",
     )
     parser.add_argument(
-        "--seed", type=_whole, default=0, metavar="N", help="other seeds give other numbers (default: 0)"
+        "--seed", type=_whole, default=0, metavar="N", help="seed of the numbers in the exercises (default: 0)"
     )
     parser.add_argument("--count", type=_whole, default=1, metavar="K", help="how many exercises (default: 1)")
     parser.add_argument("--format", choices=FORMS, default="markdown", help="format of the sheet (default: markdown)")
@@ -79,7 +83,12 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
 def _grade_arguments(parser: ArgumentParser) -> None:
     files = "EXERCISES.json and a file with lines '1a: answer'; or, with --name, the answers"
     parser.add_argument("answers", metavar="ANSWERS", nargs="+", help=files)
-    parser.add_argument("--name", metavar="TEMPLATE", default="", help="grade answers to one exercise, without files")
+    parser.add_argument(
+        "--name",
+        metavar="TEMPLATE",
+        default="",
+        help="grade answers to one exercise, given by the name of its template",
+    )
     parser.add_argument("--seed", type=_whole, metavar="N", help="the seed of that exercise")
     json_option(parser)
 

@@ -16,7 +16,10 @@ SECONDS = 0.02  # enough time for the interrupted callback to return
 
 
 def repeat_lost_interrupts() -> None:
-    """Install the hook that repeats a discarded KeyboardInterrupt and passes other exceptions to the old hook."""
+    """Install a hook that raises a KeyboardInterrupt again if Python discards it (see the module's text).
+
+    Other discarded exceptions go to the hook that was installed before.
+    """
     previous = sys.unraisablehook
 
     def hook(discarded: Any, /) -> None:

@@ -35,7 +35,7 @@ from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
 
-TARGETS = ("c", "numpy", "js")
+TARGETS = ("c", "numpy", "js", "jax")
 PAGE_SUFFIXES = (".html", ".htm")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda page: page.markdown(),
@@ -135,7 +135,7 @@ def _show(options: Namespace) -> int:
 
 
 def _trajectory(propagator: Any, options: Namespace) -> Any:
-    """Propagate a motion and return its trajectory, or None after Ctrl-C.
+    """Compute the motion that a command asks for and return its trajectory, or None after Ctrl-C.
 
     If the propagation ends early, the samples so far are written to the file of ``--out``.
     """
@@ -165,14 +165,14 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to the file of ``--out``; return the end of a sentence that says so."""
+    """Write the samples before an error to the file of ``--out``; return text for the error message that says so."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
     from symrot.report import output
 
     output.save(part, options.out)
-    return f"; {options.out} contains the {len(part)} samples before"
+    return f"; {options.out} contains the {len(part)} samples before that time"
 
 
 def _explain(options: Namespace) -> int:
@@ -196,6 +196,8 @@ def _emit(options: Namespace) -> int:
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
                          "(see `symrot emit --help`)")  # fmt: skip
+    if options.cmake and (options.directory is None or options.target not in (None, "c") or not options.kernel):
+        raise InputError("--cmake: expected a KERNEL or SCENE in C and -o DIR (see `symrot emit --help`)")
     for option in ("jacobian", "step", "order"):
         if getattr(options, option) is not None and not options.kernel:
             raise InputError(f"--{option}: expected a KERNEL or SCENE as well (see `symrot emit --help`)")
@@ -219,6 +221,8 @@ def _emit(options: Namespace) -> int:
             return OK
         if options.target in (None, "c"):
             texts |= kernels.certificate_files(kernel, options.directory, bounds)
+        if options.cmake:
+            texts |= kernels.build_files()
         written = kernels.write_files(options.directory, texts)
     progress("")
     say(str(path) for path in written)
@@ -239,7 +243,7 @@ def _derive(options: Namespace) -> int:
         raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
     if options.format != "markdown" and options.all:
         if options.directory is None:
-            raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
+            raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")
         say(str(path) for path in derivation_pages.write_pages(options.directory, options.format))
         return OK
     directory = options.directory or Path("derivations")
@@ -367,7 +371,8 @@ def _doctor(options: Namespace) -> int:
 
 def _run_arguments(parser: ArgumentParser) -> None:
     cli_scenes.scene_options(parser)
-    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--method", default="auto", metavar="NAME",
+                        help="method that computes the motion: auto, exact, taylor, dop853 or scipy:NAME")  # fmt: skip
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument(
         "--state",
@@ -377,14 +382,14 @@ def _run_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE",
-                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for a page that moves")  # fmt: skip
+                        help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for an animated page")  # fmt: skip
     json_option(parser)
 
 
 def _show_arguments(parser: ArgumentParser) -> None:
     cli_scenes.scene_options(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
-                        help="FILE.html, or a film: FILE.gif, FILE.mp4 (default: SCENE.html)")  # fmt: skip
+                        help="file to write: FILE.html, or a film, FILE.gif or .mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 
 
@@ -394,7 +399,7 @@ def _explain_arguments(parser: ArgumentParser) -> None:
 
 
 def _emit_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or a scene file")
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument(
@@ -403,12 +408,14 @@ def _emit_arguments(parser: ArgumentParser) -> None:
         help="compare the files on disk with new ones; exit 1 with a diff if they differ",
     )
     parser.add_argument(
-        "--target", choices=TARGETS, help="language (default: c for a kernel, all for --all and --check)"
+        "--target", choices=TARGETS, help="language to emit (default: c for a kernel, all for --all and --check)"
     )
     parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
                         "such as omega,q, or by constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
     parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument("--cmake", action="store_true", help="with -o: also write the files with which CMake "
+                        "and pkg-config find the kernels in this folder")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder to write to, or to compare with --check (default: standard output for a kernel, "
                         "otherwise ./generated)")  # fmt: skip
@@ -448,16 +455,17 @@ def _check_arguments(parser: ArgumentParser) -> None:
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
     )
     parser.add_argument("--given", dest="hypotheses", metavar="HYPOTHESIS", action="append", default=[],
-                        help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+                        help="check the claim (given as text) only where 'x > 0', 'x != 0' or 'a == b' holds; may be "
+                        "repeated")  # fmt: skip
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
-                        help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+                        help="unit of a symbol in a claim given as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--where", metavar="'NAME = WORDS'", action="append", default=[],
-                        help="what a name means, with a claim as text: 'I = moment of inertia about the centre', "
+                        help="meaning of a name in a claim given as text: 'I = moment of inertia about the centre', "
                         "'p = spin'; may be repeated")  # fmt: skip
     _context_options(parser)
     parser.add_argument("--strict", action="store_true",
-                        help="exit 1 for a definition (a name for a formula that symrot does not know)")  # fmt: skip
-    parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+                        help="exit with code 1 for a claim that only defines a name by a formula")  # fmt: skip
+    parser.add_argument("--no-repair", action="store_true", help="do not suggest corrections of a false claim")
     json_option(parser)
 
 
@@ -499,7 +507,7 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
     **cli_exercises.COMMANDS,
-    "emit": ("print a kernel of the library or of a scene as C, NumPy or JavaScript", _emit, _emit_arguments),
+    "emit": ("print a kernel of the library or of a scene as C, NumPy, JavaScript or JAX", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),
@@ -554,7 +562,7 @@ def _check_unknown(command: str, unknown: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect a stream whose reader has ended to the null device, so that Python closes the stream without error."""
+    """Redirect a stream to the null device after its reader has ended, so that Python closes it without an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

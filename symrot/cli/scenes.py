@@ -9,11 +9,11 @@ __all__ = ["load", "scene_options"]
 
 
 def scene_options(parser: ArgumentParser) -> None:
-    """Declare the scene of a command, ``--set`` and ``--table-folder``."""
+    """Declare the arguments of a command that takes a scene: the scene, ``--set`` and ``--table-folder``."""
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings", help=SET_HELP)
     parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
-                        help="allow files of samples in this folder too; may be repeated "
+                        help="let the scene read files of samples in this folder too; may be repeated "
                         "(default: only the scene's own folder)")  # fmt: skip
 
 

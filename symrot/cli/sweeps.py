@@ -20,7 +20,7 @@ _TIMES = "'linspace(0, 10, 11)' or 'values(0, 1, 5)'"
 
 
 def _vary(texts: list[str]) -> dict[str, Any]:
-    """Return the law of each name in texts such as ``omega_1 ~ normal(0, 0.1)``."""
+    """Return, by name, the distributions and grids in texts such as ``omega_1 ~ normal(0, 0.1)``."""
     from symrot.sweeps.laws import Distribution, read_law
 
     laws: dict[str, Any] = {}
@@ -97,12 +97,12 @@ def _sweep(options: Namespace) -> int:
     except KeyboardInterrupt:
         progress("")
         sys.stderr.write(
-            f"symrot: interrupted; complete chunks are in {options.out}, run the same command again to go on\n"
+            f"symrot: interrupted; complete chunks are in {options.out}; run the same command again to go on\n"
         )
         return INTERRUPTED
     except OSError as reason:  # such as a full disk
         raise InputError(
-            f"{options.out}: {reason.strerror or reason}; complete chunks are there, run the same command again to "
+            f"{options.out}: {reason.strerror or reason}; the complete chunks are saved, run the same command again to "
             "go on"
         ) from None
     progress("")
@@ -129,32 +129,59 @@ def _sweep(options: Namespace) -> int:
 def _arguments(parser: ArgumentParser) -> None:
     scene_options(parser)
     parser.add_argument("--vary", metavar="'NAME ~ LAW'", action="append", default=[],
-                        help="'omega_1 ~ normal(0, 0.1)', also uniform and loguniform; or a grid, 'weight = "
-                        "linspace(1, 2, 50)', also geomspace and values; NAME may be a number in the scene file, "
-                        "such as body.mass; may be repeated")  # fmt: skip
-    parser.add_argument("--attitudes", metavar="WORD", default="scene", help="uniform: draw initial attitudes")
-    parser.add_argument("--sampling", metavar="WORD", default="random", help="random, latin or sobol (default: random)")
-    parser.add_argument("--count", metavar="N", help="number of trajectories (default: of the points of all grids)")
+                        help="draw a value at random, 'omega_1 ~ normal(0, 0.1)' (or uniform, loguniform), or take it "
+                        "from a grid, 'weight = linspace(1, 2, 50)' (or geomspace, values); NAME may be a number in "
+                        "the scene file, such as body.mass; may be repeated")  # fmt: skip
+    parser.add_argument(
+        "--attitudes",
+        metavar="WORD",
+        default="scene",
+        help="'uniform' draws the initial attitude at random from all rotations (default: the scene's own)",
+    )
+    parser.add_argument(
+        "--sampling",
+        metavar="WORD",
+        default="random",
+        help="how values are drawn: random, latin or sobol (default: random)",
+    )
+    parser.add_argument(
+        "--count", metavar="N", help="number of trajectories (default: one for each point of the grids)"
+    )
     parser.add_argument("--seed", metavar="N", default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--output", metavar="NAME", action="append", default=[],
-                        help="energy, omega_1@end, axis_z@2.5, omega_3@max ..; may be repeated "
-                        "(default: omega@end)")  # fmt: skip
+                        help="quantity to write: at all times (energy), at one time in s (omega_1@end, axis_z@2.5), or "
+                        "its extreme (omega_3@max); may be repeated (default: omega@end)")  # fmt: skip
     parser.add_argument("--times", metavar="GRID", help=f"sample times in s, {_TIMES.replace('%', '%%')} "
                         "(default: the scene's own)")  # fmt: skip
     parser.add_argument("--statistics", metavar="NAME", action="append", default=[],
-                        help="mean, envelope, 'percentiles(5, 50, 95)' or 'histogram(BINS)' of each output; "
-                        "may be repeated")  # fmt: skip
-    parser.add_argument("--keep", metavar="WORD", default="all", help="statistics: remove single values at the end")
+                        help="statistics of each output over all trajectories: mean, envelope, "
+                        "'percentiles(5, 50, 95)' or 'histogram(BINS)'; may be repeated")  # fmt: skip
+    parser.add_argument(
+        "--keep",
+        metavar="WORD",
+        default="all",
+        help="'statistics' writes only the statistics, not each trajectory (default: all)",
+    )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write FILE.zarr or FILE.parquet")
-    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--method", default="auto", metavar="NAME",
+                        help="method that computes the motions: auto, exact, taylor, dop853 or scipy:NAME")  # fmt: skip
     parser.add_argument("--tolerance", metavar="X", help="error to aim for (default: the scene's own)")
     parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (default: one per core)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead, tcp://host:8786")
-    parser.add_argument("--chunk", type=int, metavar="N", help="trajectories in a chunk; does not change the results")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="address of a Dask scheduler whose workers to use instead, such as tcp://host:8786",
+    )
+    parser.add_argument(
+        "--chunk",
+        type=int,
+        metavar="N",
+        help="trajectories that are computed and written at once; does not change the results",
+    )
     json_option(parser)
 
 
 COMMANDS: dict[str, Command] = {
-    "sweep": ("propagate many motions of a scene by a design of varied values", _sweep, _arguments),
+    "sweep": ("propagate many motions of a scene with varied values", _sweep, _arguments),
 }
 """The command with its help text, the function that runs it, and the function that declares its arguments."""

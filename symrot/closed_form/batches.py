@@ -93,7 +93,7 @@ def _units(quaternions: Floats) -> dd.Pair:
 
 
 def _sign(i: int, j: int) -> float:
-    """Return the sign of the product of the quaternion units i and j, which are numbered 0 to 3 (1, i, j, k)."""
+    """Return the sign in the product of two of the units 1, i, j, k, numbered 0 to 3: i j = k -> 1, j i = -k -> -1."""
     one, other = ([float(k == unit) for k in range(4)] for unit in (i, j))
     return float(hamilton(one, other)[i ^ j])
 
@@ -140,7 +140,7 @@ def _pairs(values: Floats) -> Floats:
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants as double-double numbers, shape (n, 2 k): one row for each motion."""
+    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row."""
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -151,26 +151,30 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants as double-double numbers: shape (2 k,) if none of them varies, otherwise (n, 2 k)."""
+    """Return k constants of n motions as double-double numbers: shape (2 k,) if motions share them, else (n, 2 k)."""
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return, for each angular velocity (n, 3), whether batches give the same bits as single motions."""
+    """Return whether each angular velocity, shape (n, 3), is of usual size, so that the functions below accept it.
+
+    For other sizes, motions have to be computed one by one.
+    """
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities in which components that are too small to affect a motion are set to zero."""
+    """Return angular velocities with components set to zero where they are too small to affect the motion."""
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of one free body from many initial angular velocities and attitudes.
+    """Return the motions of one free body from many initial states as a batch, which one call of C computes.
 
-    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo, of shape (8,) or (n, 8).
+    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo of doubles, shape (8,) or
+    (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -186,7 +190,7 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of free bodies in principal axes, given their three moments of inertia, kg m^2.
+    """Return the motions of free bodies, given their principal moments of inertia, kg m^2, as a batch for C.
 
     The other arguments are as for :func:`free_bodies`.
     """
@@ -211,10 +215,11 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the batch of free bodies in axes that are not principal, and for which motions it is valid.
+    """Return the motions of free bodies whose axes are not principal axes as a batch for C, and a Boolean array.
 
+    The array is false for the motions that the batch cannot compute exactly; they must be computed one by one.
     ``entries`` are the components xx, yy, zz, xy, xz and yz of the inertia tensors, kg m^2; the other arguments are as
-    for :func:`free_bodies`. Motions for which the Boolean array is false must be computed one by one.
+    for :func:`free_bodies`.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -225,7 +230,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return three doubles as integers: all are multiplied by the same power of two."""
+    """Return three doubles as integers, all multiplied by the same power of two, which makes their ratios exact."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -236,7 +241,7 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the batch of the motions of symmetric heavy tops from many initial states.
+    """Return the motions of symmetric heavy tops from many initial states as a batch, which one call of C computes.
 
     ``across`` and ``own`` are the moments of inertia across and about the symmetry axis; ``pull`` is weight times
     height as hi, lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
@@ -247,7 +252,7 @@ def tops(
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of symmetric gyrostats, rotor along ``axis``, from many initial states.
+    """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C.
 
     ``across`` and ``own`` are the moments of inertia across and about the axis, ``rotor`` is the angular momentum of
     the rotor.
@@ -259,7 +264,7 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of symmetric bodies under a constant torque about ``axis``, from many initial states.
+    """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C.
 
     ``across`` and ``own`` are the moments of inertia across and about the axis.
     """
@@ -271,9 +276,9 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of bodies driven about one axis, from many initial states.
+    """Return the motions of bodies driven about one axis, from many initial states, as a batch for one call of C.
 
-    ``constants``, computed in integers, describe one body for all initial states, or one body for each initial state.
+    ``constants`` describes one body for all initial states, or is a list with one body for each initial state.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

@@ -52,7 +52,7 @@ def _files() -> dict[str, Path]:
 
 
 def source(name: str) -> str:
-    """Return the text of ``name.c`` with the text of its headers inserted, each header only once."""
+    """Return the text of the C file ``name.c`` with the texts of its headers inserted, each only once."""
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -92,7 +92,9 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: that of the constants, if it has one, then that of the loops.
+    """Load the compiled libraries of a closed form and return them in a list.
+
+    The last one contains the loops over samples; the one before it, if there is one, computes the constants.
 
     Raises
     ------

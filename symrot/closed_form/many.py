@@ -32,7 +32,7 @@ class Batch(NamedTuple):
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return a batch of only those motions whose entry in ``chosen`` is true."""
+        """Return a batch of those motions of this batch whose entry in the Boolean array ``chosen`` is true."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
@@ -55,7 +55,7 @@ def _place(function: Any) -> int:
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
     """Write the samples of n motions into arrays; return the indices of the motions that could not be computed.
 
-    Their numbers exceed the range of double-double arithmetic, and they must be computed one by one.
+    The numbers of these motions exceed the range of double-double arithmetic, so they must be computed one by one.
 
     Parameters
     ----------

@@ -18,8 +18,8 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""Kinds of functions in a motion: elementary functions, theta series, their imaginary transforms (series for large
-moduli), and functions on the separatrix."""
+"""Kinds of functions by which a motion is computed: elementary functions, theta series, transformed theta series (which
+converge faster for large moduli), and functions on the separatrix."""
 
 _DOMAIN = 1
 _Functions = tuple[Any, Any, Any]
@@ -100,7 +100,10 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the C functions `prepare` and loop over samples of a closed form, and the ctypes type of its constants."""
+    """Return the two C functions of a closed form, and the ctypes type of its constants.
+
+    The function `prepare` computes the constants of a motion; the other function loops over its samples.
+    """
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))

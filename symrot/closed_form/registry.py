@@ -33,7 +33,7 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """A closed form: its description, its condition on scenes, and a function that returns its motions."""
+    """One kind of closed form: its description, its condition on a scene, and a function that returns motions."""
 
     name: str
     applies: Callable[[Scene], bool]
@@ -113,7 +113,7 @@ def _gyrostat(scene: Scene) -> Starts:
 
 
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
-    """Return the sums of the constant torques of a scene, body components, and of its linear damping coefficients."""
+    """Return the sum of a scene's constant torques and the sum of its linear damping coefficients, body components."""
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
         vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
@@ -179,9 +179,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the index of the body axis parallel to the vector ``name``, or to None.
+    """Return a function that takes a scene and returns the body axis parallel to a vector of its only torque.
 
-    ``name`` is a field of the only torque of the scene.
+    ``name`` is the name of the vector, such as ``"center_of_mass"``; the function returns an index, or None if the
+    vector is not parallel to a body axis.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

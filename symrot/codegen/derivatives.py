@@ -1,9 +1,9 @@
-"""Formulas of outputs and of their derivatives, in several ways that need different numbers of operations.
+"""Formulas of outputs and of their derivatives, written in several ways that need different numbers of operations.
 
 All ways are equal in exact arithmetic. Which one needs the fewest operations depends on the kernel, so the caller
-prints each and chooses:
+counts the operations of each and chooses:
 
-- the chain rule through the quantities with a name, and through none;
+- the chain rule, with named intermediate quantities or with formulas in the inputs alone;
 - forward accumulation: the derivatives of each temporary by the inputs, one assignment after the other;
 - backward accumulation: the derivatives of each output by the temporaries;
 - if an output is linear in some inputs, its value as the sum of these inputs times their derivatives.
@@ -58,7 +58,7 @@ class Formulas:
 
     @property
     def explicit(self) -> "Formulas":
-        """The same outputs without quantities with a name."""
+        """The same outputs as formulas in the inputs alone: each named quantity is replaced by its formula."""
         outputs = []
         for name, formula in self.outputs:
             for symbol, value in reversed(self.named):
@@ -100,7 +100,7 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
 
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
-    """Return the program with the fewest operations among equal formulas; changes of sign only decide between equals.
+    """Return the program with the fewest operations among equal formulas; changes of sign count only in a tie.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def kernel_program(name: str) -> Program:
 
 
 def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
-    """Return the formulas of a kernel, in each way to compute them."""
+    """Return the formulas of a kernel, once for each way to compute them (:func:`symrot.codegen.derivatives.ways`)."""
     formulas = Formulas(kernel.formulas, kernel.named)
     base, *variables = name.split(BY)
     if not variables:

@@ -67,7 +67,7 @@ def _rates(equations: Equations) -> Formulas:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of the equations of motion as the program ``name``, with parameters."""
+    """Return the program ``name`` of the right-hand side ``dy/dt`` of the equations of motion, and its parameters."""
     signature = Signature(name, (TIME, _state_argument(equations), _rates_argument(equations)))
     rates = _rates(equations)
     return lower(signature, rates.outputs, rates.named)
@@ -168,7 +168,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive and return the kernel of a planned motion: its rates, its other quantities, and what is conserved.
+    """Derive and return the kernel of a planned motion: its rates, its other quantities and its conserved quantities.
 
     As soon as the rates are derived, ``on_rates`` is called with them and their C text, so that a compiler can run
     while the other quantities are derived and their conservation is proven.

@@ -19,7 +19,7 @@ from symrot.codegen.taylor.recurrences import recurrences
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import FUNCTIONS, Node
 
-__all__ = ["RK4", "Method", "RungeKutta", "TaylorSeries", "step_program", "stepped"]
+__all__ = ["RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "step_program", "step_signature", "stepped"]
 
 STATE, SIZE, NEXT = "x", "dt", "next"
 
@@ -108,6 +108,15 @@ def _polynomial(series: Sequence[Any], dt: Any) -> Any:
     return value
 
 
+def step_signature(rates: Program, name: str) -> Signature:
+    """Return the name and the arguments of a step: t, x, p (if the rates have parameters), dt, next."""
+    time, state = rates.signature.argument("t"), rates.signature.argument("y")
+    size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
+    results = tuple((f"{NEXT}_{each}", unit, f"{meaning} at t + dt") for each, unit, meaning in state.components)
+    parameters = tuple(a for a in rates.signature.arguments if a.name == "p" and a.size)
+    return Signature(name, (time, replace(state, name=STATE), *parameters, size, Argument(NEXT, "out", results)))
+
+
 def step_program(rates: Program, method: Method, name: str) -> Program:
     """Return the program of one step, with the arguments t, x, p (if the rates have parameters), dt, next.
 
@@ -125,16 +134,13 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
     InputError
         If the method is a Taylor series and the rates contain an operation without one.
     """
-    time, state = rates.signature.argument("t"), rates.signature.argument("y")
-    size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
-    results = tuple((f"{NEXT}_{each}", unit, f"{meaning} at t + dt") for each, unit, meaning in state.components)
-    parameters = tuple(a for a in rates.signature.arguments if a.name == "p" and a.size)
-    arguments = (time, replace(state, name=STATE), *parameters, size, Argument(NEXT, "out", results))
+    signature = step_signature(rates, name)
     recorder = _Recorder()
-    inputs = {each: recorder.symbol(each) for a in arguments if a.role == "in" for each, *_ in a.components}
+    inputs = {each: recorder.symbol(each) for a in signature.arguments if a.role == "in" for each, *_ in a.components}
     functions = {each: recorder.function(each) for each in FUNCTIONS}
     outputs = stepped(rates, method, inputs, inputs[SIZE], functions, recorder.constant)
-    return recorder.program(Signature(name, arguments), dict(zip((each for each, *_ in results), outputs, strict=True)))
+    results = (each for each, *_ in signature.argument(NEXT).components)
+    return recorder.program(signature, dict(zip(results, outputs, strict=True)))
 
 
 class _Recorder:

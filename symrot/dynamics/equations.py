@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """Motion whose attitude is given by Euler angles; vectors are rotated by the matrix of these angles."""
+    """The symbols of a motion whose attitude is given by Euler angles instead of a quaternion."""
 
     sequence: str
 
@@ -157,7 +157,7 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a structure in symbols, its states of attitude, and the relations between its symbols.
+    """Return the symbols that describe a motion of the given structure, its attitude states, and its relations.
 
     A relation is an expression that is always zero, such as the squared norm of the quaternion minus 1.
     """
@@ -240,7 +240,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
     if matrix.free_symbols & set(names) or determinant == 0:
-        raise InputError("torque: expected jumps along which the motion can slide in exactly one way, got other jumps")
+        raise InputError("torque: the motion slides along a jump of the torque, but the equations do not determine how")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,

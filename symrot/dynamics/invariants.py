@@ -72,7 +72,10 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities that follow from a special direction of a torque."""
+    """Yield candidates that the direction of a torque suggests, as (name, unit, value, formula to test).
+
+    Under gravity, for example, the vertical angular momentum may be conserved.
+    """
     if not isinstance(torque, FieldTorque):
         return
     if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
@@ -86,7 +89,7 @@ def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Ite
 
 def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) -> str:
     if holds and name.startswith("spin"):
-        return "equal moments, and no torque about that axis"
+        return "the moments about the other axes are equal, and no torque acts about this axis"
     if not kinds:
         return "no torque acts"
     acting = _listed(kinds)
@@ -97,10 +100,10 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
     if name == "energy":
         return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
     if name == "Jacobi integral":
-        return "in axes that rotate with the orbit the tide is at rest"
+        return "the gravity gradient is constant in axes that rotate with the orbit"
     if name == "angular momentum":
-        return f"{acting} changes only its direction in the body"
-    return f"{acting} has no moment about that axis of space"
+        return f"{acting} changes only the direction of the angular momentum in the body"
+    return f"{acting} has no moment about this axis, fixed in space"
 
 
 def _listed(kinds: Sequence[str]) -> str:

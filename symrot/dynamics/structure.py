@@ -54,7 +54,10 @@ class InertiaTensor(NamedTuple):
 
 
 class TorqueSwitch(NamedTuple):
-    """A jump or kink in the formulas of a torque: a :class:`symrot.formula.switches.Switch` with formulas as text."""
+    """A function in a torque's formulas that jumps or has a kink, such as sign or abs; its formulas are texts.
+
+    The fields are explained in :class:`symrot.formula.switches.Switch`.
+    """
 
     mode: str
     kind: str
@@ -112,8 +115,8 @@ class FormulaTorque(NamedTuple):
     switches : tuple of TorqueSwitch
         The jumps and kinks of the formulas; empty if the formulas are smooth, or if the plan was made without modes.
     choices : tuple of str
-        The formulas with all parts of each ``where``; empty if no ``where`` has a part that must not always be
-        evaluated.
+        The formulas with both branches of each ``where(condition, u, v)``. The field is empty if both branches may
+        always be evaluated; a branch such as ``1/omega_1`` may only be evaluated where its condition holds.
     held : tuple of str
         Modes whose guards (arguments of the functions) stay at zero while the motion slides.
     """
@@ -133,14 +136,14 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a formula contains a ``where`` with a part that may be evaluated only if the condition holds."""
+        """Whether a formula contains ``where(condition, u, v)`` with a branch that must not always be evaluated."""
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
 
 TorqueStructure = FieldTorque | FormulaTorque
 
 MOVING = (None, None, None)
-"""``constant`` of a structure in which no component of omega is constant."""
+"""Value of :attr:`Structure.constant` if no component of omega is constant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +199,7 @@ class Structure:
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """The facts that eliminate states: rotation about one axis, and constant components of omega_b."""
+        """The two facts that eliminate states: the only axis of rotation, and the constant components of omega_b."""
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":

@@ -133,9 +133,9 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return ``left x right`` with terms of the same two variables collected, as in (C - B) r_2 r_3.
+    """Return the cross product with terms in the same product of variables collected, as in (C - B) r_2 r_3.
 
-    If the moments of inertia are equal, such a component is then zero without simplification.
+    If the moments B and C have the same symbol, this component is zero without further simplification.
     """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
@@ -157,7 +157,7 @@ LAWS: dict[str, Callable[..., TorqueLaw]] = {
     "expression": _expression,
 }
 if LAWS.keys() != TORQUE_KINDS.keys():
-    raise AssertionError(f"expected one law per torque kind, differing: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
+    raise AssertionError(f"expected a law for each kind of torque, got none for {LAWS.keys() ^ TORQUE_KINDS.keys()}")
 
 
 _FUNCTIONS: dict[str, Callable[..., Expr]] = {
@@ -177,10 +177,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula in which some products of a number and a sum, such as 2*(1 + tanh(u)), become new names.
+    """Return a formula in which each product of a number and a sum with tanh, atan, exp or log is replaced by a name.
 
-    The values of the new names are added to ``known``. SymPy would expand such a product and combine its constant with
-    other constants, which leaves a rounding error where the sum tends to zero.
+    An example is 2*(1 + tanh(u)). The product is added to ``known`` as the value of the name. SymPy would expand the
+    product and combine its constant with other constants; a rounding error then remains where the sum tends to zero.
     """
     if node[0] in ("number", "symbol"):
         return node
@@ -211,7 +211,7 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the expressions, by name, for all names in an ``expression`` torque, in quantities of a motion."""
+    """Return the values, by name, of all names that the formulas of an ``expression`` torque may contain."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
@@ -228,8 +228,8 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
         if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
             raise InputError(
-                f"torque: expected abs to be written where a formula has a kink, got {source!r}, which contains "
-                f"abs({size.args[0]}) implicitly"
+                f"torque: expected a formula that writes abs where it has a kink, got {source!r}; write it with "
+                f"abs({size.args[0]})"
             )
     return result
 
@@ -245,7 +245,7 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque, body components, of the potential of a law: minus its gradient by rotations."""
+    """Return the torque, body components, that a law's potential exerts: minus its derivatives by rotations."""
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

@@ -1,4 +1,4 @@
-"""Propagation of a scene from many initial states and with many values of its constants, all at once."""
+"""Ensembles: many motions of one scene with different initial states and constants, computed together."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -62,7 +62,7 @@ class EnsembleMember(MotionSamples):
     method, message : str
         The method, and the reason why the motion stopped early, or an empty text.
     tolerance : float
-        Error of the motion to aim for.
+        Tolerance with which the motion was computed.
 
     Examples
     --------
@@ -122,7 +122,8 @@ class Ensemble(MotionSamples):
     t : array, shape (m,) or (n, m)
         Sample times, s, in the order in which they were passed.
     status : array, shape (n,)
-        0 for a motion that was followed to its last time, -1 for a motion that stopped early, as in SciPy's solve_ivp.
+        0 for a motion that was computed up to its last time, -1 for a motion that stopped early, as in SciPy's
+        solve_ivp.
     messages : n texts
         For each motion that stopped early, the time at which it stopped and the reason; empty for the other motions.
     methods : n texts
@@ -130,7 +131,7 @@ class Ensemble(MotionSamples):
     stats : EnsembleStats
         Steps, evaluations and time.
     tolerance : float
-        Error of each motion to aim for.
+        Tolerance with which the motions were computed.
 
     Examples
     --------
@@ -211,10 +212,10 @@ class Ensemble(MotionSamples):
         Parameters
         ----------
         quantity : str
-            A name among ``output.quantities`` of a scene, such as ``"omega"``; no attitude, whose components have no
-            mean that is an attitude.
+            A name that ``output.quantities`` of a scene accepts, such as ``"omega"``. Attitudes are not accepted,
+            because the mean of their components is not an attitude.
         omit_stopped : bool
-            Whether to leave motions out at times that they did not reach; otherwise the mean is NaN there.
+            Whether to skip a motion at times that it did not reach; if False, the mean is NaN at these times.
 
         Raises
         ------
@@ -266,13 +267,13 @@ class Ensemble(MotionSamples):
         return percentiles
 
     def _statistic(self, quantity: str, omit_stopped: bool, pair: tuple[Callable[..., Any], Callable[..., Any]]) -> Any:
-        """Return a statistic over the motions; ``pair`` computes it with all values, and without NaN."""
+        """Return a statistic over the motions; ``pair`` has a function that uses all values, and one that skips NaN."""
         if quantity in UNAVERAGED or quantity not in QUANTITIES:
             names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
         if self.t.ndim != 1:
             raise InputError(
-                "t: expected sample times that all motions share, for statistics, got other times for each"
+                "t: expected sample times that all motions share, for statistics, got different times for each motion"
             )
         values = self.quantity(quantity)
         if not omit_stopped:
@@ -296,9 +297,9 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    To the last bit, the samples of a motion do not depend on the other motions, their order or the number of threads.
-    The method ``auto`` uses a closed form for each motion that has one; the samples then have the same bits as those of
-    :func:`symrot.propagate`. For other motions, and where steps were measured to be faster
+    The bits of a motion's samples do not depend on the other motions, their order or the number of threads. The method
+    ``auto`` uses a closed form for each motion that has one; the samples then have the same bits as those of
+    :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
     (:func:`symrot.ensemble.exact.choose`), ``auto`` uses Taylor series with one trajectory in each SIMD lane. If a
     motion stops before its last time, the other motions are not affected; its ``status`` is -1 and its message says
     why.
@@ -326,7 +327,7 @@ def propagate_ensemble(
     method : str
         ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all motions.
     tolerance : float, optional
-        Error of each trajectory to aim for; default: the tolerance of the scene.
+        Tolerance for the error of each trajectory; default: the tolerance of the scene.
     workers : int
         Number of threads that compute motions.
 

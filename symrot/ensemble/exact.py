@@ -33,14 +33,14 @@ MOST_BITS = 59  # largest number of conditions in a pattern, without the three o
 
 
 class Kind(NamedTuple):
-    """The closed form of a motion and the index of the body axis to which the form refers; each may be None."""
+    """The name of a closed form and the index of the body axis to which it refers; each may be None."""
 
     form: ClosedForm | None
     axis: int | None
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the kinds of closed form in an ensemble, each with the indices of its trajectories.
+    """Return the kinds of closed form that occur in an ensemble, each with the indices of its trajectories.
 
     The closed form depends only on which components are zero and which constants are equal. Therefore only one
     trajectory is examined for each such pattern.
@@ -95,7 +95,10 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories of one closed form, with their constants as arrays; ``batch`` is None if computed one by one."""
+    """Trajectories with the same closed form, and their constants as arrays.
+
+    ``batch`` is None if the trajectories are computed one by one.
+    """
 
     form: ClosedForm
     rows: Rows
@@ -104,11 +107,11 @@ class Solved(NamedTuple):
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to compute in closed form; with ``faster``, only where that is faster than steps.
+    """Return the trajectories to compute in closed form.
 
-    The choice follows measured times, in microseconds per trajectory, for rotation by 0.01 to 10^4 rad, tolerances of
-    1e-6 and 1e-12, and 400 trajectories of 101 samples (``python -m symrot.bench.starts --ensembles`` prints them for
-    the spans of the scenes):
+    With ``faster``, return only those for which this is faster than steps. The choice uses times that were measured, in
+    microseconds per trajectory, for rotation by 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12, and 400 trajectories of
+    101 samples (``python -m symrot.bench.starts --ensembles`` prints them for the spans of the scenes):
 
     - A batch in closed form takes 4 to 18 if only initial states vary and 4 to 29 if constants vary. Steps take 13 to
       46 in the first case and 33 to 75 in the second for up to 10 rad, and more for larger angles. If products of
@@ -117,8 +120,8 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
       vary: 12 in a batch, 6 to 9 by steps, of which there are few because the motion ends.
     - A motion computed alone takes 1100 if products of inertia vary and are nearly zero, or if moments of inertia are
       nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 for rotation about one axis
-      or spin-up if constants are too large or too small for a batch. Steps take as long at the angles of
-      :data:`ALONE_LOSES_BELOW`.
+      or spin-up if constants are too large or too small for a batch. Below the angles of :data:`ALONE_LOSES_BELOW`,
+      steps are faster.
 
     The choice for a trajectory uses only its own angle of rotation, so that it does not depend on other trajectories.
     """
@@ -163,9 +166,10 @@ def follow_exact(
     variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Write the samples of the trajectories ``solved``, which share one closed form, into ``omega`` and ``quaternion``.
+    """Compute the samples of the trajectories ``solved`` by their closed form, and write them into the given arrays.
 
-    ``times``, s, have shape (m,) or (n, m); if ``quaternion`` is None, the attitude is not computed.
+    The arrays are ``omega`` and ``quaternion``; if ``quaternion`` is None, the attitude is not computed. ``times``, s,
+    have shape (m,) or (n, m).
     """
     since = times - start if start else times
     form, rows, batch, usual = solved
@@ -198,7 +202,7 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Set the samples at the initial time to the exact initial states, as every method for single motions does."""
+    """Set the samples at the initial time to the exact initial states, as for single motions."""
     if not at_start.any():
         return
     states = variation.initial_states
@@ -216,7 +220,7 @@ def _put_starts(
 
 
 class _Alone:
-    """Function from the index of a trajectory to its motion in closed form, for motions that are computed one by one.
+    """A callable that returns the motion of one trajectory in closed form, for trajectories computed one by one.
 
     The motions share the constants of the body if no constant of the scene varies.
     """
@@ -242,7 +246,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """Trajectories whose motions have the same closed form and, in this form, the same body axis."""
+    """A group of trajectories with the same closed form and the same body axis in it."""
 
     variation: Variation
     axis: int | None
@@ -255,7 +259,7 @@ class _Part(NamedTuple):
 
     @property
     def start(self) -> Floats:
-        """The initial attitudes as pairs hi, lo of each component, shape (n, 8), or (8,) if all are equal."""
+        """The initial quaternions, each component as two doubles (hi, lo), shape (n, 8), or (8,) if all are equal."""
         variation, attitudes = self.variation, self.variation.attitudes
         if attitudes is None:
             own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
@@ -274,7 +278,7 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield groups of trajectories of one closed form: row indices, their batch, and for which rows the batch is valid.
+    """Yield groups of trajectories of one closed form: row indices, their batch, and the rows for which it is valid.
 
     The batch is None if the motions of the group must be computed one by one.
     """
@@ -380,7 +384,7 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return the sum of a torque field's component over all torques of a kind.
+    """Return one component of a field, such as ``torque``, summed over all torques of one kind in the scene.
 
     Return None if there are several such torques and the component varies in the ensemble.
     """

@@ -2,9 +2,9 @@
 
 A SIMD instruction computes with two, four or eight doubles at once; a lane is the place of one of them. Series, step
 length and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`, and each motion has steps of
-its own length. When the motion in a lane has ended, the lane takes the next motion. Lanes are independent: to the last
-bit, the samples of a motion do not depend on the other motions, on its lane or on the number of threads, and a motion
-that stops early does not affect the others. A leg is the part of a motion after its start, or the part before it.
+its own length. When the motion in a lane has ended, the lane takes the next motion. Lanes are independent: the bits of
+a motion's samples do not depend on the other motions, on its lane or on the number of threads, and a motion that stops
+early does not affect the others. A leg is the part of a motion after its start, or the part before it.
 """
 
 import ctypes
@@ -59,7 +59,10 @@ ORDERS = (
 
 
 def order_for(tolerance: float) -> int:
-    """Return the fastest order of the Taylor series for a tolerance (``python -m symrot.bench.ensemble --orders``)."""
+    """Return the fastest order of the Taylor series for a tolerance, as measured.
+
+    ``python -m symrot.bench.ensemble --orders`` prints the times.
+    """
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
@@ -88,7 +91,7 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library from the C text of its Taylor series; see :func:`translation_unit`."""
+    """Return the C source of the library of :func:`translation_unit`, given the C text of its Taylor series."""
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
     shared, operations, series, steps = map(c_text, paths)
@@ -210,7 +213,7 @@ class LaneIntegration:
     times : array, shape (m,) or (n, m)
         Sample times, s, common to all motions or separate for each motion; in any order, before or after t0.
     tolerance : float
-        Error of each trajectory to aim for, see :func:`symrot.propagation.steppers.taylor.step_tail`.
+        Tolerance for the error of each trajectory, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
         Largest number of steps of one motion.
     workers : int
@@ -235,7 +238,7 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the memory addresses of the rows of an array, by name. The array has one column per leg."""
+        """Return the memory addresses of the rows of ``table`` by name; ``table`` has one column per leg."""
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 

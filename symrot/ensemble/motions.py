@@ -44,7 +44,7 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """The samples of n motions at m times each, and the cost of each motion; NaN at times that were not reached."""
+    """The result for n motions: samples at m times each (NaN at times that were not reached), and the costs."""
 
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
@@ -65,7 +65,7 @@ class Problem(NamedTuple):
     workers: int
 
     def of(self, rows: Integers) -> "Problem":
-        """Return the problem of some of the motions, with the equations that their own constants need."""
+        """Return the problem for some of the motions, with equations that are chosen for their constants."""
         variation = self.variation.of(rows)
         times = self.times if self.times.ndim == 1 else self.times[rows]
         return self._replace(variation=variation, plan=variation.plan(), times=times)
@@ -117,7 +117,10 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions that have the same equations; ``rows`` are their indices in the ensemble."""
+    """Return the samples of motions with the same equations.
+
+    ``rows`` are the indices of these motions in the ensemble.
+    """
     count = len(problem.variation)
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
@@ -156,9 +159,9 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Write the samples of motions under torques with switching functions into the arrays, and return them.
+    """Compute motions under torques with switching functions one by one; write their samples into the arrays.
 
-    Each motion is computed as a single motion. ``stepped`` holds the indices of the trajectories.
+    Return the samples and the cost. ``stepped`` contains the indices of the trajectories.
     """
     from symrot.propagation.propagate import propagator
 
@@ -205,7 +208,7 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that integrates motions of a plan in SIMD lanes, of an order for the tolerance."""
+    """Return the compiled library that integrates motions of a plan in SIMD lanes, for a tolerance."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -237,11 +240,11 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Return times of the scene, s, converted to times since the epoch, from which the steppers count."""
+        """Convert times of the scene, s, to times since the epoch, which the steppers use."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return, for motion k, a function from an epoch, s, to rates that count time from it, and parameters.
+        """Return, for motion k, a function from an epoch, s, to rates and parameters for times since this epoch.
 
         Return None if the rates do not depend on time. See :func:`symrot.propagation.time_shift.clock`.
         """
@@ -254,7 +257,7 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Compute angular velocity and attitude from the states, and write them into ``omega`` and ``quaternion``."""
+        """Convert integrated states to angular velocity and attitude, written into ``omega`` and ``quaternion``."""
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
@@ -272,7 +275,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the parameters of the kernel on which the named outputs depend, as pairs (name, formula)."""
+        """Return the kernel's parameters that the named outputs need, as pairs (name, formula)."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
@@ -280,7 +283,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Return the outcome for all trajectories; ``integrate(k, times)`` returns states and cost of trajectory k."""
+        """Integrate all trajectories by ``integrate(k, times)``, which returns states and cost of trajectory k."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -309,7 +312,7 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Return the outcome for motions under torques given by formulas, which are computed one after the other.
+    """Compute motions under torques given by formulas, one after the other, and return their outcome.
 
     Their steps are limited by bounds of the rates or need a check; the stepper in SIMD lanes supports neither.
     """

@@ -1,4 +1,7 @@
-"""Values of the parameters of kernels for each trajectory of an ensemble; constant ones are evaluated once."""
+"""Values of a kernel's parameters for each trajectory of an ensemble.
+
+Parameters that do not vary are evaluated once.
+"""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -47,7 +50,7 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k parameters for each trajectory, shape (n, k), computed exactly and rounded once.
+        """Return the values of k kernel parameters for each trajectory, shape (n, k), exact except for one rounding.
 
         Raises
         ------
@@ -68,7 +71,10 @@ class Numbers:
         return values
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the value of a formula for each trajectory; rows of equal constants are computed once."""
+        """Return the values of a formula, one for each trajectory.
+
+        For trajectories with equal constants, the formula is evaluated only once.
+        """
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)
         rows, places = np.unique(table, axis=0, return_inverse=True)

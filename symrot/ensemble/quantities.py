@@ -1,4 +1,4 @@
-"""Quantities of many motions at once: the kernel of the scene, evaluated for arrays of states and of constants."""
+"""Output quantities of many motions at once, computed by the scene's kernel from arrays of states and constants."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ __all__ = ["Source"]
 
 
 class Source(NamedTuple):
-    """The variation of an ensemble and a plan valid for all its motions, from which quantities are computed."""
+    """The data for computing quantities: the variation of an ensemble, and a plan that is valid for all its motions."""
 
     variation: Variation
     plan: Plan

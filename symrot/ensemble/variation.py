@@ -1,7 +1,7 @@
 """Variations: the checked arrays that describe an ensemble, and a plan that is valid for all its trajectories.
 
-A column is the array of the values of one constant, one value per trajectory. The place of a constant says where the
-scene contains it: in the inertia tensor, or in a field of a torque.
+A column is the array of the values of one constant, one value per trajectory. The place of a constant is its position
+in the scene: in the inertia tensor, or in a field of a torque.
 """
 
 from collections.abc import Callable, Hashable, Mapping
@@ -55,7 +55,7 @@ _caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their
 
 
 class Place(NamedTuple):
-    """Where a scene contains a constant: in the inertia tensor, or in a field of a torque."""
+    """The position of a constant in a scene: in the inertia tensor, or in a field of a torque."""
 
     torque: int  # -1: the inertia
     field: str
@@ -64,7 +64,7 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Variation:
-    """The variation of a scene: initial states of n trajectories, and a column of values for each constant that varies.
+    """The description of an ensemble: initial states of n trajectories, and a column for each constant that varies.
 
     Constants have the same names as in plans.
     """
@@ -96,7 +96,7 @@ class Variation:
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return the value stored under ``key``, or the result of ``make()``, which is then stored.
+        """Return the value that is cached under ``key``; if there is none, call ``make()`` and cache its result.
 
         The value may depend only on the scene; ``make`` is called once for all ensembles of the same scene.
         """
@@ -111,7 +111,7 @@ class Variation:
 
     @cached_property
     def attitudes(self) -> Floats | None:
-        """Initial unit quaternions as pairs hi, lo of each component, shape (n, 8); None if they do not vary."""
+        """Initial unit quaternions, each component as two doubles (hi, lo), shape (n, 8); None if they do not vary."""
         from symrot.closed_form.batches import attitudes
 
         return None if self.quaternion is None else attitudes(self.quaternion)
@@ -142,12 +142,12 @@ class Variation:
         return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
-        """Return the text that precedes the names of a torque's constants, such as ``torque2_``."""
+        """Return the prefix of the names of a torque's constants, such as ``torque2_``, or an empty text."""
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the fixed constants of the field to which the varying constant ``name`` belongs.
+        """Return the constants that do not vary in the field that contains the varying constant ``name``.
 
         Constants that are not equal to a double within 2^-200 are left out.
         """
@@ -206,7 +206,7 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return groups of trajectories, as row indices in order, for each of which :meth:`plan` is the same.
+        """Return groups of trajectories, as row indices in order, such that :meth:`plan` is the same within each group.
 
         The group of a trajectory, and therefore its plan, depends only on its own constants: on which of them are zero,
         and on which moments of inertia are equal.
@@ -256,7 +256,7 @@ class Variation:
 
 
 def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
-    """Return whether two constants are equal, for each trajectory or, if neither varies, for all."""
+    """Return whether two constants are equal: one entry per trajectory, or one value if neither constant varies."""
     if isinstance(one, Fraction) and isinstance(other, Fraction):
         return number.equal(one, other)
     left, right = (float(value) if isinstance(value, Fraction) else value for value in (one, other))
@@ -264,7 +264,7 @@ def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the name of the field that contains a constant of a torque, and the component if the field is a vector."""
+    """Return the name of the constant's field in the torque, and the component if the field is a vector."""
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
@@ -275,7 +275,7 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value that represents a column for the planner: zero if all values are zero, else a nonzero value."""
+    """Return one value of a column for the planner: zero if all values are zero, otherwise a nonzero value."""
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -429,7 +429,7 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
     kind = TORQUE_KINDS[scene.torques[place.torque].kind]
     field = next(field for field in kind.fields if field.name == place.field)
     if field.name in FIXED:
-        raise InputError(f"parameters: {name} is the same for all trajectories; {FIXED[field.name]}")
+        raise InputError(f"parameters: {name} is the same for all trajectories and cannot vary; {FIXED[field.name]}")
     if field.shape == "scalar or vector" and name not in places and np.ndim(values) == 1:
         values = np.repeat(_array(values, (), name, field.unit)[:, None], len(chosen), axis=1)
     array = _array(values, () if name in places else (len(chosen),), name, field.unit)
@@ -445,5 +445,5 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
 
 
 def _field(key: str, place: Place) -> str:
-    """Return the name that ``parameters`` accepts for the whole field of the constant ``key``."""
+    """Return the name in ``parameters`` for the whole field that contains the constant ``key``."""
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

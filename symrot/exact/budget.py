@@ -1,8 +1,9 @@
 """A budget for one decision: how many formulas it may convert to polynomials before it gives up.
 
-Each root inside a root and each inverse function inside another one is read into a ring of its own, and proofs about
-them read both sides again, so nested functions need many readings. The result of a reading is stored only until the
-decision ends. So the count, and with it the verdict, is the same on every machine and for any order of decisions.
+A formula is converted in a ring of polynomials. Each root inside a root and each inverse function inside another one
+needs a ring of its own, and proofs about them convert both sides again, so nested functions need many conversions. The
+result of a conversion is stored only until the decision ends. So the count, and with it the verdict, is the same on
+every machine and for any order of decisions.
 """
 
 from collections.abc import Callable, Hashable, Iterator
@@ -16,7 +17,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Most readings in one decision, which take seconds; the claims of the random tests need at most 400."""
+"""Most conversions in one decision, which take seconds; the claims of the random tests need at most 400."""
 
 
 @dataclass
@@ -44,7 +45,7 @@ def one_decision() -> Iterator[None]:
 
 
 def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
-    """Return ``compute()``, computed only once for each key in one decision; outside a decision, at every call."""
+    """Return ``compute()``. Within one decision the function is called once for each key, and its result is stored."""
     budget = _current.get()
     if budget is None:
         return compute()
@@ -68,5 +69,5 @@ def spend_ring() -> None:
     if budget.left < 0:
         raise TooLarge(
             f"expected a formula that needs at most {MOST_RINGS} conversions of nested parts to "
-            "polynomials, got more; split it"
+            "polynomials, got more; split the formula"
         )

@@ -26,7 +26,10 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions by equal ones; return the rings of the proof, or None."""
+    """Prove ``left = right`` by replacing inverse functions by equal ones.
+
+    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    """
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
@@ -48,7 +51,10 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield inverse functions that equal another one: (symbol, its value by another symbol, the rings of the proof)."""
+    """Yield pairs of symbols for inverse functions that are proven equal, or to have the sum pi/2.
+
+    Each is yielded as (symbol, its value by the other symbol, the polynomial rings in which the proof computes).
+    """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

@@ -198,7 +198,10 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Change values so that negative formulas become nonnegative: for each, the first symbol that can achieve this."""
+    """Change the values of a point so that formulas that are negative there become nonnegative, if possible.
+
+    For each of these formulas, one symbol of ``movable`` gets the first value of ``simple`` that achieves this.
+    """
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
@@ -247,7 +250,7 @@ def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
-    """Return whether functions are nested so little that SymPy substitutes numbers quickly."""
+    """Return whether functions are nested at most ``deep`` levels, so that SymPy substitutes numbers quickly."""
     inside = deep - formula.is_Function
     return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
 

@@ -162,7 +162,7 @@ class _FormulaCase(Case):
 
 
 def normalise(case: _FormulaCase) -> None:
-    """Convert the open entries of an equation to normal form, which may show that their two sides are equal."""
+    """Convert the unproven entries of an equation to normal form, which may show that their two sides are equal."""
     case.normal_forms = {place: case.ring.expression(case.residuals[place]) for place in case.unproven}
     case.unproven = [place for place, form in case.normal_forms.items() if form != 0]
 

@@ -120,7 +120,7 @@ class Case(ABC):
         """Return the verdict "true" if a point is known where both sides are defined, else "undecided"."""
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add the rings of a proof to the evidence of the case.
+        """Add the polynomial rings in which a proof computes to the evidence of the case.
 
         The divisors in these rings, which must not be zero, become conditions.
         """
@@ -193,7 +193,7 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return the decision "true" if open entries become equal once arguments of functions are shortened; else None."""
+    """Return the decision "true" if unproven entries are equal after arguments are simplified; else None."""
     ring = case.ring
     try:
         proofs = [
@@ -209,7 +209,7 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return the decision "true" if open entries become equal once equal inverse functions are merged; else None."""
+    """Return the decision "true" if unproven entries are equal after equal inverse functions are merged; else None."""
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:

@@ -1,4 +1,4 @@
-"""Tables of the functions that exact decision can read, and the test for functions of time and matrix entries."""
+"""Tables of the functions that may occur in exact decisions, and the test for functions of time and matrix entries."""
 
 import sympy
 from sympy import Derivative, Expr, S, preorder_traversal

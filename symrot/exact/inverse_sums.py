@@ -34,22 +34,25 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a factor to be zero: all ``numerators``, polynomials of another ring, are zero."""
+    """A sufficient condition for a polynomial to be zero: all ``numerators``, polynomials of ``ring``, are zero."""
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is proven to be zero, by the relations of the ring or because one factor is zero."""
+    """Return whether a polynomial of the ring is proven to be zero, such as the numerator of left - right.
+
+    The proof uses the relations of the ring, or shows that one factor of the polynomial is zero.
+    """
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that a numerator is zero; return the further rings of the proof, or None if no proof was found.
+    """Prove that a polynomial of the ring is zero, such as the numerator of left - right.
 
-    The tuple is empty if the relations of ``ring`` suffice. The proof holds where no divisor of the further rings is
-    zero.
+    Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
+    relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -64,7 +67,7 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which suffices to make a factor of a numerator zero.
+    """Yield conditions, each of which suffices to make a factor of a polynomial (``numerator``) zero.
 
     With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
@@ -95,7 +98,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof, by ``rings``, that an expression is zero under conditions.
+    """A proof, computed in the polynomial rings ``rings``, that an expression is zero under two kinds of conditions.
 
     The formulas ``nonnegative`` must be nonnegative, and the formulas ``positive`` positive.
     """
@@ -106,8 +109,9 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof of where ``asin(S) - w`` is zero, if ``S = sin w`` is proven; likewise for acos, atan and atan2.
+    """Return a proof that a factor ``asin(S) - w`` of a polynomial is zero for certain w, if ``S = sin w`` is proven.
 
+    Factors with acos, atan and atan2 are proven likewise; the result is None if there is no factor of this form.
     The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
     between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
     """
@@ -116,6 +120,8 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
         return None
     for factor, _ in numerator.factor_list()[1]:
         used = [number for number in names if any(mono[number] for mono in factor)]
+        if len(used) == 2 and (multiple := _principal_multiple(ring, factor, names)) is not None:
+            return multiple
         if len(used) != 1 or factor.degrees()[used[0]] != 1:
             continue
         (place,) = used
@@ -137,8 +143,46 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
     return None
 
 
+def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
+    """Return a proof of where a combination of two inverse functions is zero, as ``asin(3*x - 4*x^3) - 3*asin(x)`` is.
+
+    If S is proven to be the sine of w = 3 asin(x), the difference is zero exactly where w lies in [-pi/2, pi/2]. These
+    bounds of w are bounds of x. Return None for other combinations.
+    """
+    terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
+    leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
+    if len(leaves) != 2 or any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
+        return None
+    constant = sum((Rational(multiple) * pi for leaf, multiple in terms or () if leaf is pi), Integer(0))
+    for (leaf, own), (inner, multiple) in (leaves, leaves[::-1]):
+        factor_of_inner, shift = -Rational(multiple / own), -constant / Rational(own)
+        angle = factor_of_inner * inner + shift
+        function, least, most = _PRINCIPAL[type(leaf)]
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
+            further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
+            if further is not None:
+                bounds = sorted([(least - shift) / factor_of_inner, (most - shift) / factor_of_inner])
+                ends = _ends_of_argument(inner, *bounds)
+                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+                return PrincipalValueProof(edge, inside, (other, *further))
+    return None
+
+
+def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
+    """Return formulas that are nonnegative where an inverse function has values from ``low`` to ``high``."""
+    function, least, most = _PRINCIPAL[type(inner)]
+    sign = -1 if isinstance(inner, acos) else 1  # acos decreases
+    ends = []
+    if low > least:
+        ends.append(sign * (inner.args[0] - function(low)))
+    if high < most:
+        ends.append(sign * (function(high) - inner.args[0]))
+    return tuple(ends)
+
+
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if ``y cos w = x sin w`` is proven; otherwise None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if ``y cos w = x sin w`` is proven; otherwise None.
 
     The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
     """
@@ -158,7 +202,7 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof of where ``atan2(y, x)`` is an angle w, if y or x is a root or an absolute value; or None.
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None.
 
     For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
     positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in

@@ -1,7 +1,7 @@
-"""Functions of an argument that can be shortened: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
+"""Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
-The ring has one variable for the value of each function that it does not know. If two arguments are proven equal, so
-are the functions of them; so each argument is replaced by its normal form before the formula is read.
+The polynomial ring has one variable for each call of a function that it does not know. A function has equal values at
+equal arguments, but the ring has one variable for each; so arguments are replaced by their normal forms first.
 """
 
 from collections.abc import Sequence
@@ -28,9 +28,9 @@ MOST_COMPARED = 8
 def with_plain_arguments(
     formulas: Sequence[Expr], hypotheses: Sequence[Expr] = (), domain: Sequence[Expr] = ()
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
-    """Return formulas in which the arguments of functions are in normal form, and the rings in which that is proven.
+    """Return formulas with the arguments of functions in normal form, and the rings in which these were computed.
 
-    The formulas are equal to the given ones wherever no divisor of these rings is zero. The rings are empty if no
+    The results equal the formulas passed in wherever no divisor of these rings is zero. The rings are empty if no
     argument contains a function, a root or a divisor.
     """
     formulas, rings = list(formulas), []
@@ -48,7 +48,7 @@ def with_plain_arguments(
 
 
 def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return the normal form of each argument, and the further rings of the proofs.
+    """Return the normal form of each argument, and the polynomial rings in which equal arguments were proven equal.
 
     Arguments that are proven equal get the same normal form.
     """
@@ -68,7 +68,10 @@ def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, 
 def proof_by_arguments(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` with all arguments of functions in normal form; return the rings of the proof, or None."""
+    """Prove ``left = right`` with all arguments of functions in normal form.
+
+    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
     if (shorter, other) == (left, right):
         return None

@@ -93,7 +93,7 @@ def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return the expressions of a chain without repetitions of the expression before."""
+    """Return a chain without the expressions that merely repeat the expression before them."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:
@@ -121,7 +121,10 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
             pairs = zip(quotients, ring.relations.basis, strict=True)
             cofactors = tuple((_plain(ring, q), _plain(ring, b)) for q, b in pairs if q)
             yield Link(
-                _fraction(ring, numerator, value), "multiples of what the hypotheses put to zero", None, cofactors
+                _fraction(ring, numerator, value),
+                "multiples of expressions that are zero by hypothesis",
+                None,
+                cofactors,
             )
     yield Link(ring.expression(value), "common factors")
 

@@ -88,7 +88,7 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return constraints that some choice of signs meets at every point.
+    """Return the constraints that one choice of signs can meet together at every point; leave out the others.
 
     Where a polynomial of a constraint is zero, its own sign is free. So two constraints may share only polynomials that
     are nowhere zero, because formulas divide by them.

@@ -1,8 +1,8 @@
 """Tests that a closed surface is the boundary of a body: winding numbers along lines, and pairs of crossing triangles.
 
-A surface bounds a body if each point of space is either outside (winding number 0) or inside it (winding number 1).
-A line through the body shows the winding numbers of all points on it. A search of all pairs of triangles shows each
-proper crossing; for large meshes only the lines are affordable.
+A surface bounds a body if the winding number of each point of space is 0 (outside) or 1 (inside). Along a line, the
+winding numbers follow from the crossings of the line with the surface. A search through all pairs of triangles detects
+each proper crossing; for large meshes only the lines are fast enough.
 """
 
 from typing import Any, NamedTuple
@@ -40,16 +40,17 @@ class _Boxes(NamedTuple):
     high: Floats
 
     def around(self, axis: int, value: Any) -> NDArray[np.bool_]:
-        """Return for each triangle whether its range of a coordinate contains the value."""
+        """Return, for each triangle, whether its range along an axis contains a value."""
         within: NDArray[np.bool_] = self.low[axis] <= value
         within &= self.high[axis] >= value
         return within
 
 
 def require_boundary(surface: Surface, where: str) -> str:
-    """Return a sentence about the tests that a closed surface passed; raise InputError if it crosses itself.
+    """Test a closed surface, and return a sentence about the tests that it passed.
 
-    The surface may have several shells: parts beside each other, and cavities, whose normals point into the cavity.
+    Raise InputError if it crosses itself. The surface may have several shells: parts beside each other, and cavities,
+    whose normals point into the cavity.
     """
     numbers = shells(surface)
     count = int(numbers.max()) + 1
@@ -72,7 +73,7 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the triangles through which lines are drawn: the largest of each shell, and others at equal intervals."""
+    """Return the numbers of the triangles through which test lines pass: the largest of each shell, and some others."""
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
@@ -85,7 +86,10 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Return 1 if all points on a line through a triangle are outside or inside, 0 if the line meets an edge."""
+    """Test a line through a triangle; return 1 if it passes the test, 0 if it meets an edge and shows nothing.
+
+    A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised.
+    """
     own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
     axes = AXES[int(np.abs(normal).argmax())]
@@ -104,7 +108,10 @@ def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: 
 def _profile(
     corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
 ) -> tuple[Floats, NDArray[np.int64]] | None:
-    """Return the depths at which a line crosses the surface and the winding number behind each; None near an edge."""
+    """Return the depths at which a line crosses the surface, and the winding number behind each crossing.
+
+    Return None if the line passes too close to an edge.
+    """
     u, v, depth = axes
     near = np.flatnonzero(boxes.around(u, target[u]))
     near = near[_Boxes(boxes.low[:, near], boxes.high[:, near]).around(v, target[v])]
@@ -139,10 +146,10 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
 
 
 def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
-    """Return whether all pairs of triangles were searched; raise InputError for two that cross.
+    """Search all pairs of triangles for a crossing and return True; return False if there are too many pairs.
 
-    A crossing is proper: an edge of one triangle passes through the interior of another with which it shares no vertex.
-    Triangles that only touch, up to rounding errors, do not cross.
+    Raise InputError if two triangles cross. Only proper crossings count: an edge of one triangle passes through the
+    interior of another with which it shares no vertex. Triangles that only touch, up to rounding errors, do not cross.
     """
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))
@@ -174,7 +181,7 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
 
 
 def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
-    """Return a triangle of which an edge pierces the interior of the other triangle of its pair, or None."""
+    """Return the number of a triangle that has an edge through the other triangle of its pair, or None."""
     corners = surface.triangles
     a, b, c = (corners[through, k] for k in range(3))
     heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
@@ -192,7 +199,10 @@ def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
-    """Return on which side of the plane (a, b, c) each vertex d is; 0 if rounding errors could change the side."""
+    """Return 1 or -1 for the side of the plane (a, b, c) on which each vertex d is.
+
+    Return 0 if rounding errors could change the side.
+    """
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s
     products = np.stack([u[:, i] * (v[:, j] * w[:, k]) for i, j, k in _PERMUTATIONS])

@@ -34,8 +34,8 @@ class Inertial:
     volume : Fraction or None
         Volume of a mesh, m^3; None for a link.
     error : float
-        Bound of the error of mass, centre and tensor, relative to their size, that arithmetic added; 0 if they are
-        exact for the numbers of the file.
+        Bound of the relative error of mass, centre and tensor that is caused by rounding; 0 if they are computed
+        exactly from the numbers of the file.
     checks : str
         A sentence that says how a mesh was searched for crossing triangles; empty for a link.
 

@@ -46,7 +46,7 @@ class MeshBody(NamedTuple):
 
 
 class _Body(NamedTuple):
-    """Integrals of a density over a polyhedron, about a centre, each with a bound of its error."""
+    """The zeroth, first and second moments of a density over a polyhedron, about a centre, with error bounds."""
 
     mass: tuple[Fraction, Fraction]
     first: tuple[tuple[Fraction, Fraction], ...]
@@ -58,7 +58,7 @@ class _Body(NamedTuple):
 def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any = 1, flip: bool = False) -> Inertial:
     """Return mass, centre of mass and inertia of the body that a closed mesh bounds.
 
-    The result is right for the polyhedron to 1e-12, and exact for meshes of up to 20 000 triangles.
+    The relative error of the result is at most 1e-12; for meshes of up to 20 000 triangles the result is exact.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     scale : number
         Length of the unit of the file, m: ``"1/1000"`` for a mesh in mm.
     flip : bool
-        Whether to reverse the orientation of all triangles, for a mesh that is turned inside out.
+        Whether to reverse the orientation of all triangles, for a mesh whose normals point inwards.
 
     Returns
     -------
@@ -139,8 +139,8 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
     if result is None:
         if work > LARGEST_WORK:
             raise InputError(
-                f"{where}: expected a mesh whose integrals reach an error of {float(LARGEST_ERROR):g}, got one whose "
-                f"terms cancel, with {len(surface.triangles)} triangles; reduce their number"
+                f"{where}: expected a mesh whose integrals have an error of at most {float(LARGEST_ERROR):g}, got one "
+                f"whose terms cancel, with {len(surface.triangles)} triangles; reduce their number"
             )
         moments = exact_moments(surface, degree)
         _require_volume(moments, unit, where)
@@ -167,7 +167,7 @@ def _positive(value: Any, where: str, expectation: str) -> Fraction:
 
 
 def _density(density: Any, where: str) -> Any:
-    """Return a density as a formula tree."""
+    """Parse a density and return its formula; raise InputError if it cannot be read."""
     if isinstance(density, str):
         node = parse(density, where)
         if node[0] != "number":
@@ -176,14 +176,14 @@ def _density(density: Any, where: str) -> Any:
 
 
 def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
-    """Return the degree of the integrals that a density needs."""
+    """Return the highest degree of the monomials to be integrated: the degree of the density plus 2."""
     axes = {name: generator(name) * unit for name in "xyz"}
     powers = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
     return 2 + max((sum(item) for item in powers), default=0)
 
 
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
-    """Return the integrals of a density, kg, kg m, kg m^2, from those of powers of local coordinates."""
+    """Return the moments of a density (kg, kg m, kg m^2) from the integrals of monomials of local coordinates."""
     axes = {
         name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)
     }
@@ -211,7 +211,10 @@ def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fractio
 
 
 def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
-    """Return mass, centre, tensor and relative error; None if the error is too large, or the mass not positive."""
+    """Return mass, centre of mass, tensor and relative error.
+
+    Return None if the error is too large or the mass is not positive.
+    """
     (mass, mass_error), first = body.mass, body.first
     if mass <= mass_error:
         return None
@@ -241,7 +244,7 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
 
 
 def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
-    """Raise InputError if the volume is zero or negative; a volume within the bound of its error passes."""
+    """Raise InputError if the volume of a mesh is exactly zero, or negative by more than the bound of its error."""
     volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
     if volume == 0 and error == 0:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")

@@ -1,4 +1,4 @@
-"""Reading of mesh files by trimesh: vertices and triangles as arrays, and one sentence for each file that has none."""
+"""Reading of mesh files by trimesh: vertices and triangles as arrays, and one clear error for each unusable file."""
 
 from io import BytesIO
 from pathlib import Path
@@ -65,7 +65,7 @@ def read_surface(path: Path, where: str) -> Surface:
 
 
 def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
-    """Return vertices and triangles; all bodies of a file, at their places, form one mesh."""
+    """Return the vertices and triangles of a file; all bodies in it, at their positions, form one mesh."""
     options: dict[str, Any] = {"process": False, "maintain_order": True}
     if kind in ("obj", "glb"):
         options["skip_materials"] = True

@@ -1,4 +1,7 @@
-"""Rotations as robot files write them, as exact matrices that map components in the inner frame to the outer frame."""
+"""Exact rotation matrices from the notations of robot files.
+
+They map components in a child frame to its parent frame.
+"""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -15,13 +18,13 @@ Numbers = Sequence[Fraction]
 
 
 class Angles(NamedTuple):
-    """How a file writes angles: in degrees or rad, and the sequence of axes, in lower case about moving axes."""
+    """The settings of a robot file for angles: degrees or rad, and the Euler sequence (lower case: moving axes)."""
 
     degrees: bool = False
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the angle that a number of the file means."""
+        """Return the exact angle that a number in the file stands for."""
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 

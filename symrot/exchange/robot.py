@@ -1,4 +1,4 @@
-"""The inertials of robot files in the formats URDF, MJCF and SDF: read, and checked that a body can have them."""
+"""Reading of the inertials of robot files (URDF, MJCF, SDF), and the test that a body can have these values."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -23,7 +23,7 @@ _ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 class Link(NamedTuple):
-    """A link of a robot file: its inertial, or the reason why it has none that a body can have.
+    """A link of a robot file with its inertial, or with the reason why it has no valid inertial.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Link(NamedTuple):
     problem : str
         A clause such as ``"expected a positive mass, got 0"``; empty if there is none.
     empty : bool
-        Whether the link has no element ``<inertial>``, as links for frames and sensors.
+        Whether the link has no element ``<inertial>``, as is usual for links that only mark a frame or a sensor.
 
     Examples
     --------
@@ -57,12 +57,15 @@ class Format(NamedTuple):
     read: Callable[[Element, Element], Inertial]
 
     def elements(self, root: Element) -> list[Element]:
-        """Return the elements of all links; elements of the same tag elsewhere, as in plugins, are no links."""
+        """Return the elements of all links.
+
+        Elements with the same tag at other places, as in plugins, are not links.
+        """
         return [element for path in self.paths for element in root.findall(path)]
 
 
 def links(path: str | Path) -> tuple[Link, ...]:
-    """Return all links of a robot file with their inertials, or with their problems.
+    """Return all links of a robot file, each with its inertial or with the reason why it has no valid inertial.
 
     Parameters
     ----------
@@ -102,7 +105,8 @@ def link(path: str | Path, name: str = "") -> Inertial:
     Returns
     -------
     Inertial
-        Exact for the numbers of the file; rotations are right to 2^-300. ``table()`` is the body of a scene.
+        Computed exactly from the numbers of the file, except for rotations (errors of 2^-300). ``table()`` returns the
+        table ``body`` of a scene.
 
     Raises
     ------
@@ -178,7 +182,10 @@ def _require_body(inertial: Inertial) -> None:
 
 
 def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
-    """Return the numbers in the text of an attribute or element."""
+    """Return the numbers in the text of an attribute or element.
+
+    Raise InputError unless there are ``count`` of them.
+    """
     words = (text or "").split()
     if "$" in (text or ""):
         raise InputError(f"{place}: expected numbers, got {show(text)}; expand the file with xacro first")
@@ -195,7 +202,7 @@ def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
 
 
 def _one(element: Element, tag: str, place: str) -> Element:
-    """Return the only child with a tag."""
+    """Return the child element with the given tag; raise InputError unless there is exactly one."""
     children = element.findall(tag)
     if len(children) != 1:
         raise InputError(f"{place}: expected one element <{tag}>, got {len(children) or 'none'}")
@@ -211,7 +218,7 @@ def _inertial(element: Element, reason: str) -> Element:
 def _body(
     element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
 ) -> Inertial:
-    """Return an inertial in the axes of the link, from a tensor in the axes of the inertial."""
+    """Return the inertial of a link in the link's axes, from a tensor in the axes of the element ``<inertial>``."""
     x, y, z = center
     turned = tensor if rotation is None else _symmetric(rotate(tensor, rotation))
     return Inertial(element.get("name", ""), mass, (x, y, z), turned)
@@ -242,9 +249,9 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
 def _read_sdf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
     if inertial.get("auto", "false") not in ("false", "0"):
-        raise InputError("inertial: expected a mass and a tensor, got auto, by which the simulator computes them")
+        raise InputError("inertial: expected a mass and a tensor, got auto, which leaves both to the simulator")
     if inertial.find("fluid_added_mass") is not None:
-        raise InputError("inertial: expected a rigid body alone, got fluid_added_mass")
+        raise InputError("inertial: expected the inertia of a rigid body only, got the element fluid_added_mass")
     mass = _numbers(inertial.findtext("mass", "1"), 1, "mass")[0]
     inertia = inertial.find("inertia")
     defaults = {key: "1" if key in ("ixx", "iyy", "izz") else "0" for key in _ENTRIES}
@@ -284,7 +291,8 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; MuJoCo then computes the inertia from geoms, which is not read")
     if root.find(".//include") is not None:
         raise InputError(
-            "expected a model in one file, got <include>, whose settings may change inertials; save it as one"
+            "expected a model in one file, got <include>, whose settings may change inertials; save the model as one "
+            "file"
         )
     settings: dict[str, str] = {}
     for compiler in root.iter("compiler"):
@@ -307,7 +315,10 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
         )
     turns = [key for key in ORIENTATIONS if inertial.get(key)]
     if len(turns) > 1 or (turns and ways == ["fullinertia"]):
-        raise InputError(f"inertial: expected one orientation, and none with fullinertia, got {' and '.join(turns)}")
+        raise InputError(
+            "inertial: expected at most one orientation, and no orientation with fullinertia, got "
+            f"{' and '.join(turns)}"
+        )
     rotation = None
     for key in turns:
         count, rotation_of = ORIENTATIONS[key]

@@ -1,4 +1,4 @@
-"""The inertial of a link as XML text in principal form, and its replacement in a robot file."""
+"""Writing of a link's inertial: its XML text in principal form, and the replacement of the old text in a robot file."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -22,7 +22,7 @@ ROUNDING = Fraction(1, 10**14)
 
 
 def write_link(source: str | Path, name: str, inertial: Inertial, target: str | Path | None = None) -> Path:
-    """Write a robot file in which a link has another inertial, in principal form; all other text stays as it is.
+    """Replace the inertial of a link in a robot file, in principal form; all other text stays unchanged.
 
     Principal form: the axes of the inertial are the principal axes, and the tensor is diagonal.
 
@@ -72,7 +72,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
 
 
 def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, where: str) -> None:
-    """Raise InputError unless the new text, read again, has the mass properties that were to be written."""
+    """Raise InputError unless the new file, when it is read, gives the mass properties that were to be written."""
     root = ElementTree.fromstring(result)
     element = next(element for element in form.elements(root) if element.get("name") == name)
     try:
@@ -91,7 +91,10 @@ def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, wh
         ),
     ]
     if any(abs(x - y) > scale * ROUNDING for x, y, scale in pairs):
-        raise InputError(f"{where}: expected a link whose inertial can be written, got one that reads back differently")
+        raise InputError(
+            f"{where}: expected a link whose inertial can be replaced, but the new file gives other "
+            "values when it is read"
+        )
 
 
 def _is_utf8(content: bytes) -> bool:
@@ -132,12 +135,12 @@ def inertial_text(inertial: Inertial, form: str) -> str:
 
 
 def _digits(*values: object) -> str:
-    """Return numbers as text that reads back as the same doubles."""
+    """Return numbers as text; reading the text gives the same doubles."""
     return " ".join(repr(float(value)).removesuffix(".0") for value in values)  # type: ignore[arg-type]
 
 
 def _moments(principal: Principal) -> list[str]:
-    """Return the principal moments as text; the rounded moments of a flat body are still those of a body."""
+    """Return the principal moments as text, rounded so that a flat body still satisfies the triangle inequalities."""
     moments = [float(moment) for moment in principal.moments]
     largest = max(range(3), key=moments.__getitem__)
     while sum(Fraction(repr(m)) for m in moments) < 2 * Fraction(repr(moments[largest])):

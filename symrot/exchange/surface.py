@@ -68,7 +68,7 @@ def _hashes(points: Floats) -> NDArray[np.uint64]:
 
 
 def _edges(surface: Surface) -> tuple[Indices, Indices]:
-    """Return the starts and the ends of the edges of all triangles."""
+    """Return the start vertices and the end vertices of the edges of all triangles."""
     columns = [np.ascontiguousarray(surface.triangles[:, corner]) for corner in range(3)]
     return np.concatenate(columns), np.concatenate([columns[1], columns[2], columns[0]])
 
@@ -78,10 +78,10 @@ def _undirected(start: Indices, end: Indices, count: int) -> Indices:
 
 
 def require_closed(surface: Surface, where: str) -> None:
-    """Raise InputError unless each edge is followed equally often in both directions.
+    """Raise InputError unless the triangles traverse each edge equally often in both directions.
 
     This is the condition that the surface is the boundary of a region, so that its volume does not depend on the choice
-    of an origin. It also refuses a triangle that occurs twice.
+    of an origin. InputError is also raised for a triangle that occurs twice.
     """
     start, end = _edges(surface)
     keys = np.sort(_undirected(start, end, len(surface.vertices)) * 2 + (start > end))
@@ -99,11 +99,11 @@ def require_closed(surface: Surface, where: str) -> None:
         ]
         repeats = len(proper) - len(np.unique(proper, axis=0))
         if repeats:
-            raise InputError(f"{where}: expected each triangle once, got {repeats} that occur again; remove them")
+            raise InputError(f"{where}: expected each triangle once, got {repeats} repeated triangles; remove them")
 
 
 def _defect(surface: Surface) -> str:
-    """Return a clause that counts the open edges, or the edges at which neighbouring triangles disagree."""
+    """Return a clause with the number of open edges, or of edges at which the orientations of triangles disagree."""
     start, end = _edges(surface)
     keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)
     balance = np.bincount(number, weights=np.sign(end - start)).astype(np.int64)

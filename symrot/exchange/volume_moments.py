@@ -87,7 +87,10 @@ def _columns(points: NDArray[Any]) -> Corner:
 
 
 def _cross(left: Corner, right: Corner, sign: int = -1) -> Corner:
-    """Return the cross product of arrays of vectors; with ``sign`` = 1 the sum of the magnitudes of its terms."""
+    """Return the cross products of arrays of vectors; with ``sign`` = 1 their terms are added instead of subtracted.
+
+    For arrays of magnitudes, ``sign`` = 1 gives the sums of the magnitudes of the terms, which bound rounding errors.
+    """
     x, y, z = (left[j] * right[k] + sign * (left[k] * right[j]) for j, k in ((1, 2), (2, 0), (0, 1)))
     return x, y, z
 
@@ -100,7 +103,7 @@ def _dot(left: Corner, right: Corner) -> Any:
 
 
 def _integers(vertices: NDArray[np.float64]) -> tuple[NDArray[Any], int]:
-    """Return the coordinates as Python integers, and the exponent of the power of two that is their unit."""
+    """Return the coordinates as Python integers in units of a power of two, and the exponent of this power."""
     mantissa, exponent = np.frexp(vertices)
     digits = (mantissa * 2.0**53).astype(np.int64)
     low = (digits & -digits).astype(np.float64)  # the lowest set bit
@@ -139,16 +142,16 @@ def exact_moments(surface: Surface, degree: int) -> VolumeMoments:
 
 
 def _sum(terms: NDArray[np.float64]) -> float:
-    """Return a sum in which each term takes part in at most BLOCK + 1 rounded additions."""
+    """Return the sum of an array, added in blocks; each term takes part in at most BLOCK + 1 rounded additions."""
     whole = len(terms) // BLOCK * BLOCK
     return fsum([*terms[:whole].reshape(-1, BLOCK).sum(axis=1).tolist(), *terms[whole:].tolist()])
 
 
 def _bound(powers: Exponents) -> float:
-    """Return the relative error of one term of a sum, from the number of rounded operations on its way.
+    """Return a bound of the relative error of one term of an integral, from the number of its rounded operations.
 
-    det takes 8 (edges and corners are differences of given coordinates), a coefficient 5 k + 9 for degree k, their
-    product 1, the sum BLOCK + 1.
+    The operations are: 8 for the determinant (edges and corners are differences of given coordinates), 5 k + 9 for a
+    coefficient of degree k, 1 for the product of both, and BLOCK + 1 for the sum.
     """
     count = 8 + 5 * sum(powers) + 9 + 1 + BLOCK + 1
     return count * ROUNDING * 1.001

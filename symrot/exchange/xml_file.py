@@ -1,4 +1,4 @@
-"""Reading of XML files of unknown origin: no document types, so no entities, and limits of size and depth."""
+"""Safe reading of XML files of unknown origin: document types (and so entities) are refused, size and depth limited."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,14 +15,14 @@ DEEPEST = 200
 
 
 class Span(NamedTuple):
-    """The place of an element in the bytes of a file: ``content[start:stop]``; equal if the element is missing."""
+    """The place of an element in the bytes of a file: ``content[start:stop]``; empty if the element is missing."""
 
     start: int
     stop: int
 
 
 class _Refusal(Exception):
-    """A reason not to read a file, raised from the handlers of the parser."""
+    """Exception with the reason why a file is refused; the parser's handlers raise it."""
 
 
 def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
@@ -69,7 +69,7 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
 def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
     """Return the place of an element inside ``<owner name="name">``, and whether the element is present.
 
-    If it is absent, the span is empty and lies directly behind the start tag of the owner.
+    If the element is absent, the place is empty and directly behind the start tag of the owner.
     """
     parser = expat.ParserCreate()
     stack: list[tuple[str, str]] = []

@@ -1,4 +1,4 @@
-"""Exercises: a problem whose quantities have numbers, with questions, three hints and a proven solution."""
+"""Exercises: a problem with numbers for its quantities, questions, three hints and a proven solution."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -37,7 +37,7 @@ class Datum:
     Attributes
     ----------
     symbol : str
-        Its letter as answers write it.
+        The symbol as students type it in an answer.
     latex : str
         The symbol as LaTeX.
     value : str
@@ -88,7 +88,7 @@ class Question:
     positive : tuple of str
         Symbols that are positive.
     slips : dict of str to str
-        Numbers that follow from a usual mistake: kind of mistake -> number in ``unit``.
+        Wrong numbers that follow from usual mistakes: kind of mistake -> number in ``unit``.
 
     Examples
     --------
@@ -179,7 +179,7 @@ class Exercise:
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> "Exercise":
-        """Return the exercise that the result of :meth:`to_json` describes."""
+        """Return the exercise that data from :meth:`to_json` describe."""
         plain = dict(data)
         plain["data"] = tuple(Datum(**each) for each in data["data"])
         plain["questions"] = tuple(Question(**{**q, "positive": tuple(q["positive"])}) for q in data["questions"])
@@ -199,7 +199,7 @@ def formula(side: Any) -> str:
 
 
 class _WithNumbers(PagePrinter):
-    """A LaTeX printer that writes the value and unit of each quantity instead of its symbol."""
+    """A LaTeX printer that prints the value and unit of each quantity instead of its symbol."""
 
     def __init__(self, data: Mapping[Symbol, str]) -> None:
         super().__init__({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False, "inv_trig_style": "full"})
@@ -240,9 +240,11 @@ def _si(quantity: Quantity, number: str) -> Expr:
 
 
 def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
-    """Return random numbers for the quantities, as pairs: of many choices, the one whose answers are shortest.
+    """Choose random numbers for the quantities, and return pairs (quantity, number).
 
-    Choices that do not suit the problem, such as lengths that contradict each other, are left out.
+    Many choices are tried; the one with the shortest answers is returned.
+
+    Choices for which ``problem.fits`` is false, such as lengths that contradict each other, are skipped.
     """
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
     for _ in range(DRAWS):
@@ -263,7 +265,10 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return a measure of how awkward an answer is: its digits, or more if it is zero or not a short decimal."""
+    """Return the length of an answer, to prefer short ones.
+
+    It is the number of digits; zero, and numbers that are not short decimals, count as longer.
+    """
     if answer.is_zero:
         return ZERO
     if not answer.is_Rational:
@@ -316,7 +321,7 @@ def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield (kind of slip with symbol, wrong answer) for each usual slip with one quantity.
+    """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer).
 
     The slips are: a diameter used as a radius or the reverse, degrees used as radians, and a unit that is not
     converted.
@@ -343,7 +348,7 @@ def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
 
 
 def _number_latex(exact: Expr, unit: str) -> str:
-    """Return an answer with its unit as LaTeX: exact, followed by a rounded decimal if the exact form is none."""
+    """Return an answer with its unit as LaTeX: the exact number, also rounded unless it is a short decimal."""
     rounded = decimal(exact)
     latex = _scientific(rounded)
     if not exact.is_Rational or Rational(rounded) != exact:

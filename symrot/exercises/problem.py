@@ -1,4 +1,4 @@
-"""Problems in symbols, as templates return them: statement, law, equations of the solution, and possible numbers."""
+"""Problems in symbols, created by templates: statement, law, equations of the solution, and possible numbers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
 
 
 def written_sum(*terms: Any) -> Expr:
-    """Return a SymPy sum that is not simplified, so that it is printed as it is: ``m*R**2/2 + m*R**2``."""
+    """Return a SymPy sum that is not simplified, so that it is printed term by term: ``m*R**2/2 + m*R**2``."""
     return Add(*terms, evaluate=False)
 
 
@@ -58,9 +58,9 @@ class Line:
     left, right : Expr or Matrix
         The two sides of the equation.
     named : str
-        LaTeX to display for the left side, if that has a name.
+        Name of the left side in LaTeX, which is displayed instead of the expression.
     relations : tuple of Expr
-        Expressions that the problem makes zero.
+        Expressions that are zero in this problem; the proof of the equation uses them.
     """
 
     claim: str
@@ -100,7 +100,7 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return solution lines: first the law as written, then, if it differs, the simplified result."""
+    """Return lines of a solution: a quantity by its law as it is written, then the simplified result if it differs."""
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 
@@ -124,7 +124,7 @@ class Problem:
     asked : tuple of Asked
         The quantities that the questions ask for.
     fits : callable
-        Whether numbers, by symbol in SI units, make sense together.
+        A function that takes numbers (symbol -> value in SI units) and returns whether they are possible together.
     figure : str
         A drawing as SVG, or an empty text.
     """

@@ -88,10 +88,10 @@ def exercise(topic: str = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet
     Parameters
     ----------
     topic : str
-        A topic, the name of a template, or nothing for all topics in turn: see ``symrot exercise --list``.
+        A topic or the name of a template, see ``symrot exercise --list``; an empty text takes all topics in turn.
     seed : int
-        Other seeds give other numbers and begin with another template. The same seed gives the same exercises on
-        every machine.
+        Seed of the random choices. Another seed gives other numbers and begins with another template; the same seed
+        gives the same exercises on every machine.
     count : int
         The number of exercises.
 
@@ -128,7 +128,7 @@ def _exercise(name: str, seed: int) -> Exercise:
 
 
 def read_sheet(data: Any, where: str) -> ExerciseSheet:
-    """Return the sheet that JSON data describe; raise InputError if no sheet printed these data."""
+    """Return the sheet that JSON data describe; raise InputError if the data are not those of a sheet."""
     try:
         if data["schema"] != SCHEMA:
             raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")

@@ -1,4 +1,4 @@
-"""Two line drawings for exercises as SVG; they take the text's colour and have a title for screen readers."""
+"""Two line drawings for exercises, as SVG in the colour of the text and with a title for screen readers."""
 
 __all__ = ["crank_and_slider", "hanging_rod"]
 

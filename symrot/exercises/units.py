@@ -81,7 +81,7 @@ def unit_latex(unit: str) -> str:
 
 
 def decimal(value: Any, digits: int = 4) -> str:
-    """Return a number as text, rounded to ``digits`` significant digits, without an exponent if that is short.
+    """Return a number as text, rounded to ``digits`` significant digits, without an exponent unless the text gets long.
 
     Examples
     --------

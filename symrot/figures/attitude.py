@@ -37,7 +37,7 @@ def plane_rotation() -> Picture:
 
 
 def rodrigues_rotation() -> Picture:
-    """Draw a vector before and after a rotation about an axis, with its components along and across the axis."""
+    """Draw a vector before and after a rotation, with its components along the axis and perpendicular to it."""
     picture, view = Picture(), View(azimuth=35, elevation=22, scale=150)
     axis, vector = np.array([0.0, 0.0, 1.0]), np.array([0.75, -0.35, 0.85])
     along = (vector @ axis) * axis
@@ -160,7 +160,7 @@ def gimbal_lock() -> Picture:
 
 
 def double_cover() -> Picture:
-    """Draw the unit quaternions of all rotations about one axis: a circle, passed once in two full rotations."""
+    """Draw the unit quaternions of all rotations about one axis: a circle, traversed once in two full rotations."""
     picture, plane, angle = Picture(), Plane(120), 100.0
     one = np.asarray(axis_angle_to_quaternion((0, 0, 1), angle, degrees=True))[[0, 3]]
     turn = np.linspace(0.0, 720.0, 145)
@@ -184,7 +184,7 @@ def double_cover() -> Picture:
 
 
 def projected_quaternions() -> Picture:
-    """Draw how a unit quaternion is projected to the classical and the modified Rodrigues parameters."""
+    """Draw the projection of a unit quaternion to the classical and to the modified Rodrigues parameters."""
     picture, plane, angle = Picture(), Plane(110), 104.0
     q = np.asarray(axis_angle_to_quaternion((0, 0, 1), angle, degrees=True))[[3, 0]]  # q0 upward
     turn = np.linspace(0.0, 2 * np.pi, 121)

@@ -66,7 +66,7 @@ def outline(shape: Floats, view: View) -> Floats:
 
 
 def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
-    """Return, for each point, whether it is not hidden behind the ellipsoid ``x · shape x = 1``; no point is inside."""
+    """Return, for each point outside the ellipsoid ``x · shape x = 1``, whether the ellipsoid leaves it visible."""
     ahead = shape @ view.toward
     square, middle = view.toward @ ahead, points @ ahead
     rest = np.einsum("ni,ij,nj->n", points, shape, points) - 1.0
@@ -82,7 +82,7 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return points of a cone's rim, and the lines from its apex, the origin, that bound the cone as it is seen.
+    """Return points of a cone's rim, and the two lines from its apex (the origin) that form its visible outline.
 
     There are no such lines if the line of sight lies inside the cone. The half angle is in rad.
     """

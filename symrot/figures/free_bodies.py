@@ -91,7 +91,7 @@ def poinsot() -> Picture:
 
 
 def polhode_curves() -> tuple[list[Floats], Floats]:
-    """Return polhodes and the two curves of the separatrix, rad/s, body axes, at kinetic energy 1/2.
+    """Return several polhodes and the two curves of the separatrix, in rad/s and body axes, for the kinetic energy 1/2.
 
     Each curve has the shape (n, 3) and lies on the energy ellipsoid of the moments :data:`MOMENTS`.
     """
@@ -136,7 +136,7 @@ def _principal_axes(picture: Picture, view: View, axes: Floats, reach: float = 0
 
 
 def momentum_sphere() -> Picture:
-    """Draw the paths of the angular momentum, in body axes, on a sphere: one path for each of several energies."""
+    """Draw the paths of the angular momentum in body axes, on a sphere, for several energies."""
     picture, view = Picture(), View(VIEW.azimuth, VIEW.elevation, 125)
     picture.area(view, outline(np.eye(3), view), "fill-soft")
     picture.curve(view, outline(np.eye(3), view), "soft", closed=True)

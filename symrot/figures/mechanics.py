@@ -1,4 +1,4 @@
-"""Figures of moments and momenta, of blows, and of rolling, geared and hinged bodies."""
+"""Figures of inertia, angular momentum, blows, rolling bodies, gears and linkages."""
 
 import numpy as np
 from mpmath import mp
@@ -227,7 +227,7 @@ BARS = {"a": 0.6, "b": 1.5, "c": 1.2, "ground": 1.55}
 
 
 def four_bar_positions(phi: Floats) -> tuple[Floats, Floats]:
-    """Return the positions of the two moving pins of a four-bar linkage, each (n, 2), at crank angles in rad.
+    """Return the positions of the two moving pins of a four-bar linkage, each of shape (n, 2), at crank angles in rad.
 
     The lengths of the bars are :data:`BARS`; the second pin is where the circles of two bars intersect.
     """

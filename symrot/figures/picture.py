@@ -1,4 +1,4 @@
-"""Pictures as SVG: lines, areas, arrows, arcs and labels, the same bytes on every machine.
+"""Pictures as SVG, made of lines, areas, arrows, arcs and labels; they have the same bytes on every machine.
 
 Coordinates are rounded to two decimals, nothing depends on the time or on the order of a set, and the colours are
 classes of CSS that follow the reader's choice of a light or a dark page.
@@ -163,7 +163,7 @@ class Picture:
 
 
 def _is_straight(places: Floats) -> bool:
-    """Return whether all points lie within 0.005 SVG units of the line from the first to the last point."""
+    """Return whether all points are on the line from the first to the last point, within 0.005 SVG units."""
     chord = places[-1] - places[0]
     length = float(np.hypot(*chord))
     offsets = places - places[0]
@@ -176,7 +176,10 @@ def _number(value: float) -> str:
 
 
 def _runs(visible: NDArray[np.bool_]) -> Iterator[tuple[bool, slice]]:
-    """Yield the stretches of a line as (visible, slice of points); each ends with the first point of the next one."""
+    """Split a line into visible and hidden sections; yield (visible, slice of points) for each.
+
+    Each section ends with the first point of the next section.
+    """
     changes = np.flatnonzero(np.diff(visible.astype(int))) + 1
     bounds = [0, *changes.tolist(), len(visible)]
     for first, last in pairwise(bounds):
@@ -195,7 +198,7 @@ def _width(text: str) -> float:
 
 
 def _spans(text: str) -> Iterator[str]:
-    """Yield the SVG text of a label piece by piece; letters that follow ``_`` become a subscript."""
+    """Yield the parts of a label as SVG text; letters that follow ``_`` become a subscript."""
     for number, piece in enumerate(re.split(r"_([\w⊥∥]+)", text)):
         if not number % 2:
             after = ' dy="-4"' if number else ""

@@ -40,7 +40,7 @@ class Axes:
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve with a label at its right end, or above it at the fraction ``at`` of its length.
+        """Draw a curve with a label at its right end, or above it at the fraction ``at`` of its length if ``at`` < 1.
 
         Points above or below the rectangle are left out.
         """

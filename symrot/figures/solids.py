@@ -33,7 +33,7 @@ ONCE_AROUND = 6.0
 
 @dataclass(frozen=True)
 class Surface:
-    """The surface of a solid as lines, which are drawn, and triangles, which hide what is behind them.
+    """The surface of a solid: lines, which are drawn, and triangles, which hide the lines behind them.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Surface:
     triangles : array, shape (n, 3, 3)
         The faces.
     curved : tuple of arrays, shape (n, 3)
-        The points of each face whose two coordinates are angles.
+        For each face on which both coordinates are angles (such as a sphere), its points.
     """
 
     edges: tuple[Floats, ...]
@@ -70,7 +70,7 @@ class Surface:
 
 
 def sized(name: str) -> Solid:
-    """Return a standard solid with the dimensions that its figure has."""
+    """Return a standard solid with the dimensions used in its figure."""
     names = [dimension.name for dimension in SHAPES[name].dimensions]
     return solid(name, **SPECIAL.get(name) or {each: SIZES[each] for each in names})
 
@@ -113,7 +113,7 @@ def surface_of(body: Solid) -> Surface:
 
 
 def _grid(mapped: Any, limits: list[tuple[float, float]], face: dict[int, float], free: list[int]) -> list[Floats]:
-    """Return lines on a curved face, along each of which all coordinates but one are constant."""
+    """Return lines on a curved face; along each line only one coordinate of the map varies."""
     lines = []
     for constant, along in product(free, free):
         if constant == along:

@@ -10,41 +10,41 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "rotation_matrices": (
         Figure(
             "rotation_matrices", "One vector in two frames",
-            r"The vector $v$ (red) keeps its length. Its components along the axes of the frame rotated by $\alpha$ "
-            "(blue) differ from those along the fixed axes (black); the rotation matrix converts one into the other.",
+            r"The vector $v$ (red) does not change. Its components along the axes rotated by $\alpha$ (blue) differ "
+            "from its components along the fixed axes (black); the rotation matrix converts the components.",
             attitude.plane_rotation,
         ),
     ),
     "axis_and_angle": (
         Figure(
             "axis_and_angle", "Rotation of a vector about an axis",
-            r"A rotation about $n$ leaves the part $v_\parallel$ along the axis and rotates the part $v_\perp$ across "
-            r"it by $\alpha$. The end of $v$ moves on a circle to $v'$.",
+            r"A rotation about $n$ leaves the component $v_\parallel$ along the axis unchanged and rotates the "
+            r"perpendicular component $v_\perp$ by $\alpha$. The tip of $v$ moves on a circle to $v'$.",
             attitude.rodrigues_rotation,
         ),
     ),
     "composition": (
         Figure(
             "composition", "Two quarter rotations in both orders",
-            "The same box after a quarter rotation about the fixed axis $x$ and one about the fixed axis $y$. The two "
-            "orders end in different attitudes.",
+            "The same box after a quarter rotation about the fixed axis $x$ and a quarter rotation about the fixed "
+            "axis $y$. The two orders give different attitudes.",
             attitude.order_of_rotations,
         ),
     ),
     "euler_parameters": (
         Figure(
             "quaternion_double_cover", "Two quaternions for each attitude",
-            r"The quaternions of the rotations by $\alpha$ about one axis $n$ are a circle, on which the angle is "
-            r"$\alpha/2$. One full rotation, from $0$ to $2\pi$, leads from $1$ to $-1$ (blue); only the second one "
-            r"(red) leads back. Opposite points, $q$ and $-q$, are the same attitude.",
+            "The quaternions of all rotations about one axis $n$ form a circle, on which the angle is half the "
+            r"rotation angle $\alpha$. One full rotation, from $0$ to $2\pi$, leads from $1$ to $-1$ (blue); a second "
+            "full rotation (red) leads back to $1$. Opposite points, $q$ and $-q$, describe the same attitude.",
             attitude.double_cover,
         ),
     ),
     "spin_tensor": (
         Figure(
             "angular_velocity", "Velocity of a point of a rotating body",
-            r"The point at $r$ moves on a circle about the axis of $\omega$. Its velocity $\omega \times r$ is across "
-            r"both, of size $|\omega|\,|r| \sin\theta$.",
+            r"The point at $r$ moves on a circle about the axis of $\omega$. Its velocity $\omega \times r$ is "
+            r"perpendicular to $\omega$ and $r$, and has the size $|\omega|\,|r| \sin\theta$.",
             attitude.angular_velocity,
         ),
     ),
@@ -52,8 +52,8 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
         Figure(
             "euler_zxz", "The three rotations of ZXZ: precession, nutation, spin",
             r"A proper Euler sequence, ZXZ. The first rotation, by $\phi$, is about $z$; the second, by $\theta$, "
-            r"about the new axis $x'$; the third, by $\psi$, about the new axis $z''$. Each panel shows the frame "
-            "before the rotation in grey.",
+            r"about the new axis $x'$; the third, by $\psi$, about the new axis $z''$. Each panel shows in grey the "
+            "frame before the rotation.",
             attitude.proper_euler,
         ),
         Figure(
@@ -66,17 +66,18 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "euler_singularities": (
         Figure(
             "gimbal_lock", "Gimbal rings in a general attitude and locked",
-            r"Three rings for the sequence ZYX. On the left their axes have three different directions. On the right "
-            r"$\theta$ is a right angle: the axes of $\psi$ and $\phi$ are in one line, and the body cannot rotate "
-            "about the direction across both of the two axes that are left.",
+            "Three rings for the sequence ZYX. On the left their axes have three different directions. On the right "
+            r"$\theta$ is a right angle: the axes of $\psi$ and $\phi$ coincide, and the body cannot rotate about the "
+            "direction that is perpendicular to the two remaining axes.",
             attitude.gimbal_lock,
         ),
     ),
     "rotation_vector": (
         Figure(
             "rotation_vector", "The ball of rotation vectors",
-            r"A section through the ball of radius $\pi$ whose points are all rotations. Each attitude has one "
-            r"rotation vector $\alpha n$ inside; $(\alpha - 2\pi)\,n$ gives the same attitude the other way round.",
+            r"A section through the ball of radius $\pi$ whose points represent all rotations. Each attitude has one "
+            r"rotation vector $\alpha n$ inside the ball. The vector $(\alpha - 2\pi)\,n$, a rotation in the opposite "
+            "direction, gives the same attitude.",
             attitude.rotation_vectors,
         ),
     ),
@@ -84,24 +85,24 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
         Figure(
             "rodrigues", "Two projections of a quaternion",
             "The circle of the quaternions about one axis, with $q_0$ upward. The classical parameters $g$ (blue) "
-            "project $q$ from the centre to the tangent at $1$; the modified ones $s$ (red) project it from $-1$ to "
-            "the diameter.",
+            "project $q$ from the centre to the tangent at $1$; the modified parameters $s$ (red) project $q$ from "
+            "$-1$ to the diameter.",
             attitude.projected_quaternions,
         ),
     ),
     "relative_motion": (
         Figure(
             "relative_motion", "Velocities of two points of a body",
-            r"The second point moves with the velocity $v$ of $P$ plus $\omega \times R\,d$, which is across the line "
-            "between both points.",
+            r"The second point moves with the velocity $v$ of $P$ plus $\omega \times R\,d$, which is perpendicular "
+            "to the line between both points.",
             attitude.two_points,
         ),
     ),
     "angular_momentum": (
         Figure(
             "angular_momentum", "Angular momentum and angular velocity have different directions",
-            r"The ellipsoid on which the kinetic energy is constant, in the axes of the body. The angular momentum $L$ "
-            r"is along its normal at the end of $\omega$; it is along $\omega$ only on a principal axis.",
+            "The ellipsoid of constant kinetic energy, in body axes. The angular momentum $L$ is along the normal of "
+            r"the ellipsoid at the tip of $\omega$; it is along $\omega$ only on a principal axis.",
             mechanics.momentum_and_rate,
         ),
     ),
@@ -116,8 +117,8 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "tensor_rotation": (
         Figure(
             "tensor_rotation", "Principal axes of a tilted body",
-            "In the axes $x, y$ the body has a product of inertia. In the axes $x', y'$ along its directions of "
-            "symmetry (red), its principal axes, it has none.",
+            "In the axes $x, y$ the body has a product of inertia. In its principal axes $x', y'$ (red), along its "
+            "directions of symmetry, the product of inertia is zero.",
             mechanics.principal_axes,
         ),
     ),
@@ -125,8 +126,8 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "euler_equations": (
         Figure(
             "euler_equations", "The torque changes the angular momentum",
-            r"In a short time $dt$ the angular momentum changes by $\tau\,dt$, along the torque. The angular velocity "
-            "has in general another direction than both.",
+            r"In a short time $dt$ the angular momentum changes by $\tau\,dt$, along the torque. The direction of the "
+            "angular velocity generally differs from both.",
             mechanics.torque_and_rate,
         ),
     ),
@@ -141,15 +142,15 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "free_body_invariants": (
         Figure(
             "momentum_sphere", "Paths of the angular momentum in the body",
-            "In the body the angular momentum moves on a sphere, since its length is constant. Each curve is a "
-            "different energy. The red curves, the separatrices, cross on the axis of the intermediate moment.",
+            "In body axes the angular momentum moves on a sphere, since its length is constant. Each curve belongs to "
+            "a different energy. The red curves, the separatrices, cross on the intermediate axis.",
             free_bodies.momentum_sphere,
         ),
     ),
     "symmetric_top": (
         Figure(
             "cones_direct", "Direct precession: the body cone rolls outside the space cone",
-            r"A slender body, $A > C$. The body cone, around the axis of symmetry $e_3$, rolls on the outside of the "
+            "A slender body, $A > C$. The body cone, around the symmetry axis $e_3$, rolls on the outside of the "
             r"space cone, around $L$. They touch along $\omega$.",
             free_bodies.direct_cones,
             "Direct or retrograde",
@@ -163,25 +164,26 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     ),
     "intermediate_axis": (
         Figure(
-            "polhodes", "Polhodes on the ellipsoid of energy",
-            "Paths of the angular velocity in the body, on the ellipsoid of energy of a body with moments "
-            "$A < B < C$. Around axes 1 and 3 the paths are closed loops: small disturbances stay small. Near axis 2 "
-            "they lead away. The two red curves, the separatrices, cross there.",
+            "polhodes", "Polhodes on the energy ellipsoid",
+            "Paths of the angular velocity in body axes, on the energy ellipsoid of a body with the moments $A < B < "
+            "C$. Around axes 1 and 3 the paths are small loops, so small disturbances stay small. Near axis 2 the "
+            "paths lead away from the axis. The two red curves, the separatrices, cross on axis 2.",
             free_bodies.polhodes,
         ),
         Figure(
             "flips", "Flips of a T-handle",
-            r"Angular velocity of the scene `t_handle`, which starts about its intermediate axis, here axis 3. It "
-            r"rotates nearly steadily for a while, then flips: $\omega_3$ changes its sign.",
+            "The angular velocity in the scene `t_handle`, which starts with rotation about its intermediate axis, "
+            r"here axis 3. It rotates nearly steadily for some time and then flips: $\omega_3$ changes its sign.",
             free_bodies.flips,
         ),
     ),
     "poinsot": (
         Figure(
             "poinsot", "Poinsot's ellipsoid rolls on the invariable plane",
-            r"The ellipsoid of energy touches the invariable plane at the end of $\omega$ and rolls there without "
-            r"slipping. The polhode (blue) is the path of that point on the ellipsoid, the herpolhode (red) its path "
-            r"on the plane. Dashed lines are hidden by the ellipsoid. The angular momentum $L$ is across the plane.",
+            r"The energy ellipsoid touches the invariable plane at the tip of $\omega$ and rolls on it without "
+            "slipping. The polhode (blue) is the path of this point on the ellipsoid, the herpolhode (red) its path "
+            "on the plane. Dashed lines are hidden by the ellipsoid. The angular momentum $L$ is perpendicular to "
+            "the plane.",
             free_bodies.poinsot,
         ),
     ),
@@ -189,33 +191,34 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
         Figure(
             "free_body_rates", "Angular velocity of a free asymmetric body",
             r"The three components of $\omega$ of a free body with three different moments are the elliptic functions "
-            r"sn, cn and dn of time. The energy is less than on the separatrix, so that $\omega_3$ keeps its sign.",
+            r"sn, cn and dn of time. The energy is less than on the separatrix, so the sign of $\omega_3$ does not "
+            "change.",
             free_bodies.rates,
         ),
     ),
     "heavy_top": (
         Figure(
             "heavy_top", "A top with its angles",
-            r"Precession $\phi$ leads from the fixed axis $x$ to the line of nodes, nutation $\theta$ from the "
-            r"vertical $z$ to the axis of symmetry $e_3$, and spin $\psi$ goes around that axis. The weight $W$ acts "
-            "at the centre of mass.",
+            r"The precession $\phi$ is the angle from the fixed axis $x$ to the line of nodes, the nutation $\theta$ "
+            r"the angle from the vertical $z$ to the symmetry axis $e_3$, and the spin $\psi$ the angle about this "
+            "axis. The weight $W$ acts at the centre of mass.",
             tops.top_with_angles,
         ),
     ),
     "gyroscopic_wheel": (
         Figure(
             "gyroscopic_wheel", "A spinning wheel on a cord",
-            r"The weight $W$ has a level torque $\tau$ about the cord. The angular momentum $L$ changes along $\tau$: "
-            "the axle goes round the cord and does not fall.",
+            r"The weight $W$ has a horizontal torque $\tau$ about the point of suspension. The angular momentum $L$ "
+            r"changes along $\tau$: the axle rotates about the cord and does not fall.",
             tops.hung_wheel,
         ),
     ),
     "gravity_gradient": (
         Figure(
             "gravity_gradient", "Tidal force on a long satellite",
-            "Left: a satellite on its orbit. Right: the gravity near it, without that at its centre, stretches along "
-            r"the radius $r$ and squeezes across it (grey). The forces on its two ends (red) have a torque $\tau$ that "
-            "rotates the long axis toward the radius.",
+            "Left: a satellite on its orbit. Right: the tidal forces (grey), which are gravity minus the gravity at "
+            "the centre of the satellite, stretch it along the radius $r$ and compress it perpendicular to $r$. The "
+            r"forces on its two ends (red) have a torque $\tau$ that rotates the long axis toward the radius.",
             tops.tidal_field,
         ),
     ),
@@ -229,8 +232,8 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "free_body_separatrix": (
         Figure(
             "separatrix", "Angular velocity on the separatrix",
-            r"The body leaves one steady rotation about its intermediate axis 2 and settles into the opposite one. "
-            r"Between them $\omega_1$ and $\omega_3$ rise and fall once.",
+            "The body leaves a steady rotation about its intermediate axis 2 and approaches the opposite steady "
+            r"rotation. Between the two, $\omega_1$ and $\omega_3$ rise and fall once.",
             free_bodies.separatrix,
         ),
     ),
@@ -244,22 +247,23 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
             "Nutation",
         )
         for name, start, draw in (
-            ("loops", "pushed against its precession", tops.loops),
+            ("loops", "pushed against the direction of its precession", tops.loops),
             ("cusps", "released with its axis at rest", tops.cusps),
-            ("waves", "pushed a little along its precession", tops.waves),
+            ("waves", "pushed slightly in the direction of its precession", tops.waves),
         )
     ),
     "pendulum": (
         Figure(
             "pendulum", "A pendulum and its phase curves",
-            r"Each curve is one motion: $\dot\theta$ over $\theta$. Inside the red curve the pendulum swings (blue); "
-            "outside it turns over (green); on it the pendulum takes for ever to reach the top.",
+            r"Each curve is one motion: $\dot\theta$ over $\theta$. Inside the red curve the pendulum oscillates "
+            "(blue); outside it goes around (green); on the red curve it approaches the highest position in an "
+            "infinite time.",
             tops.pendulum_phases,
         ),
         Figure(
             "spherical_pendulum", "Path of a spherical pendulum",
-            "The path of the bob from the side and from above. It swings between two heights, and its plane of swing "
-            "goes round.",
+            "The path of the bob from the side and from above. The bob oscillates between two heights, while its "
+            "plane of oscillation rotates.",
             tops.spherical_pendulum,
             "The spherical pendulum",
         ),
@@ -267,25 +271,26 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "sleeping_top": (
         Figure(
             "sleeping_top", "Effective potential at the vertical",
-            "The effective potential of an upright top, $p_\\phi = p_\\psi$, for three spins. Above the limit "
-            "$p_\\psi^2 = 4 A W c_3$ the vertical is a valley, and the top sleeps (blue). Below it, it is a summit, "
-            "and the top falls (red).",
+            r"The effective potential of an upright top, $p_\phi = p_\psi$, for three spins. Above the limit "
+            r"$p_\psi^2 = 4 A W c_3$ the potential has a minimum at the vertical, and the top sleeps (blue). Below "
+            "the limit it has a maximum there, and the top falls (red).",
             tops.sleeping_potential,
         ),
     ),
     "driven_rotation": (
         Figure(
             "driven_rotation", "Angular velocity under a torque and damping",
-            r"From any start the angular velocity tends to $\tau / k$, where the damping $k\,\omega$ balances the "
-            r"constant torque $\tau$.",
+            r"From every initial value the angular velocity approaches $\tau / k$, where the damping $k\,\omega$ "
+            r"balances the constant torque $\tau$.",
             mechanics.driven_rates,
         ),
     ),
     "rolling": (
         Figure(
             "rolling", "A wheel that rolls without slipping",
-            "The point of contact (green) is at rest. The velocity of every other point (red) is across the dashed "
-            "line to the contact and grows with the distance. A point of the rim moves on a cycloid (blue).",
+            "The point of contact (green) is at rest. The velocity of every other point (red) is perpendicular to the "
+            "dashed line to the point of contact and grows with the distance from it. A point of the rim moves on a "
+            "cycloid (blue).",
             mechanics.rolling_disk,
             "A wheel on a straight line",
         ),
@@ -293,7 +298,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "gear_trains": (
         Figure(
             "gear_trains", "A planetary gear",
-            "Three planets (red) run between the sun (blue) and the ring (grey); the carrier (green) holds their "
+            "Three planets (red) roll between the sun (blue) and the ring (grey); the carrier (green) holds their "
             "axles.",
             mechanics.planetary_gear,
         ),
@@ -301,14 +306,15 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "planar_linkages": (
         Figure(
             "slider_crank", "Slider-crank",
-            r"The crank $r$ at the angle $\phi$ moves the slider to $x$ by the rod $L$, which is at the angle $\psi$.",
+            r"The crank $r$ at the angle $\phi$ moves the slider to $x$ through the rod $L$, which has the angle "
+            r"$\psi$.",
             mechanics.slider_crank,
             "Slider-crank",
         ),
         Figure(
             "four_bars", "Four bars",
-            r"The crank $a$, the coupler $b$ and the rocker $c$ on the ground $h$. A point of the coupler draws the "
-            "violet curve while the crank goes round once.",
+            "The crank $a$, the coupler $b$ and the rocker $c$ on the fixed bar $h$. During one revolution of the "
+            "crank, a point of the coupler moves along the violet curve.",
             mechanics.four_bars,
             "Four bars",
         ),

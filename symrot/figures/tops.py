@@ -28,7 +28,7 @@ START = np.radians(40.0)  # nutation at the start, a turning point
 
 
 def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float, float] = (A, C)) -> Trajectory:
-    """Return the motion of a heavy symmetric top with weight 1 N and its centre of mass 1 m from the tip.
+    """Return the motion of a heavy symmetric top with the weight 1 N and the centre of mass 1 m from the tip.
 
     It starts from the ZXZ angles (0, nutation, 0), rad, with the angular velocity ``omega``, rad/s.
     """
@@ -51,7 +51,7 @@ def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float,
 
 @cache
 def effective_potential() -> Callable[..., Any]:
-    """Return the effective potential of a heavy symmetric top, a function of (theta, p_phi, p_psi, A, C), in J.
+    """Return the effective potential (J) of a heavy symmetric top as a function of (theta, p_phi, p_psi, A, C).
 
     It is the energy at constant nutation for given momenta p_phi and p_psi; the weight is 1 N and the centre of mass is
     1 m from the tip.
@@ -175,7 +175,7 @@ def hung_wheel() -> Picture:
 
 
 def sleeping_potential() -> Picture:
-    """Plot the effective potential near the vertical for a fast top, a top at the limit, and a slow top."""
+    """Plot the effective potential near the vertical for a fast top, a slow top, and a top at the limit."""
     picture = Picture()
     angle = np.radians(np.linspace(-78.5, 78.5, 158))
     plot = Axes(picture, (angle[0], angle[-1]), (-0.35, 0.75), (340, 220))

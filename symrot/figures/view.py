@@ -1,4 +1,4 @@
-"""Views: orthographic projections from space, or from a plane, to the points of a picture."""
+"""Views: orthographic projections of points in space, or in a plane, to positions in a picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -21,7 +21,7 @@ SPECIAL = (
 
 
 def refuse_special(path: Path) -> os.stat_result:
-    """Return the status of a regular file, following links; raise OSError for a special or missing file.
+    """Return the status (``os.stat``) of a regular file, following links; raise OSError for any other path.
 
     Raises
     ------

@@ -149,7 +149,7 @@ def _sin_half_turns(half_turns: Fraction) -> Fraction:
 
 
 def _bits_for(value: Fraction) -> int:
-    """Return the number of bits after the binary point with which a small ``value`` has a relative error of 2^-BITS."""
+    """Return how many bits after the binary point represent a small ``value`` with a relative error of 2^-BITS."""
     return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
 
 

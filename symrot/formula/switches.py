@@ -9,13 +9,13 @@ formula                smooth formula                 guard
 =====================  =============================  ==========================================
 ``sign(u)``            ``s``                          ``u``, s = 1 or -1
 ``step(u)``            ``(1 + s)/2``                  ``u``
-``abs(u)``             ``s u``                        ``u``, unless u contains modes alone
+``abs(u)``             ``s u``                        ``u``, unless u contains only modes
 ``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
-``where(c, a, b)``     ``b + p (a - b)``              guards of the condition c, p = 1 or 0
-                       or a or b alone (see below)
+``where(c, a, b)``     ``b + p (a - b)``, or only     guards of the condition c, p = 1 or 0
+                       a or b (see below)
 ``floor(u)``           ``n``                          ``u - n`` and ``n + 1 - u``, n whole
-``mod(a, b)``          ``a - b n``                    of ``floor(a/b)``
+``mod(a, b)``          ``a - b n``                    guards of ``floor(a/b)``
 ``atan2(y, x)``        at its cut (see below)         ``x``, and ``y`` where x < 0
 =====================  =============================  ==========================================
 
@@ -114,12 +114,12 @@ def condition_error(node: Node) -> str:
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
             if condition:
-                return "a comparison such as omega_3 < 1 as the condition of where"
+                return "a comparison such as omega_3 < 1 as the first argument of where"
             asked = [node[0] == "call" and node[1] == "where" and k == 0 for k, _ in enumerate(children(node))]
         elif node[1] == "less" and any(part[0] == "call" and part[1] in ("less", "not") for part in node[2]):
-            return "one comparison at a time, such as 1 < t and t < 2"
+            return "one comparison at a time, such as 1 < t and t < 2 for 1 < t < 2"
         elif not condition:
-            return "comparisons only in the condition of where"
+            return "comparisons only in the first argument of where, such as where(t < 1, 1, 0)"
         else:
             asked = [node[1] != "less"] * len(children(node))
         errors = (wrong(child, each) for child, each in zip(children(node), asked, strict=True))
@@ -129,7 +129,10 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all conditions hold for given modes; a condition with a mode in ``held`` counts as true."""
+    """Return whether all conditions hold for given modes.
+
+    A condition that contains a mode in ``held``, along whose switch the motion slides, counts as true.
+    """
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
@@ -207,7 +210,7 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula between its switches, as a polynomial in time, states and sines of the time.
+    """Return the degree of the polynomial in time, states and sines of time that a formula is between two switches.
 
     The result is RISKY if the formula may be undefined, have a pole or contain a short pulse.
     """
@@ -269,9 +272,10 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return the value part of a ``where`` as a smooth formula.
+        """Return a or b of ``where(c, a, b)``, passed as ``node``, as a smooth formula.
 
-        Its switches affect the motion only if the formula ``share`` equals ``value``.
+        Its switches affect the motion only where ``share``, the formula of modes that represents c, equals ``value``:
+        1 for a, and 0 for b.
         """
         outside = self.conditions
         self.conditions = (*outside, (share, value))

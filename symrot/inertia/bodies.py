@@ -16,7 +16,7 @@ _ORIGIN = (0, 0, 0)
 
 
 class HasInertia(Protocol):
-    """The type of anything with a mass (kg), a centre of mass (m) and an inertia tensor about that centre (kg m^2)."""
+    """The type of objects with a mass (kg), a centre of mass (m) and an inertia tensor about this centre (kg m^2)."""
 
     @property
     def mass(self) -> Any: ...

@@ -30,7 +30,7 @@ def _table() -> dict[str, dict[str, str]]:
 
 @cache
 def closed_form(shape: str) -> dict[str, Node]:
-    """Return the formulas of a shape of mass ``m`` by name.
+    """Return the closed formulas of a shape for the mass ``m``, as a map from name to formula.
 
     The names are ``measure``, ``center_x``, ``center_y``, ``center_z``, and ``xx`` to ``yz`` for the inertia tensor.
     """

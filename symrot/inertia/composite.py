@@ -75,7 +75,7 @@ def _positive(value: Any, name: str, where: str) -> Fraction:
 
 
 def _density_node(density: Any, where: str) -> Node:
-    """Return a density as a parsed formula; raise InputError if it is a constant that is not positive."""
+    """Parse a density and return its formula; raise InputError if it is a number that is not positive."""
     if isinstance(density, str):
         node = parse(density, f"{where}.density" if where else "density")
         if node[0] != "number":
@@ -124,8 +124,8 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
     parts : sequence of Part
         The parts; at least one part must not be subtracted.
     where : str
-        Place of the parts in the scene, put in front of every error message; if there are several parts, with the
-        number of the part.
+        Place of the parts in the scene, put in front of every error message. If there are several parts, a message also
+        contains the number of the part.
 
     Returns
     -------

@@ -40,7 +40,7 @@ _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """A shape as a map from coordinates: position in the shape's axes (m), Jacobian, coordinates with their limits."""
+    """A shape as a map from coordinates to positions (m): the map, its Jacobian, and the limits of the coordinates."""
 
     position: tuple[Polynomial, ...]
     jacobian: Polynomial
@@ -84,7 +84,7 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return the map of a shape; the dimensions in ``known`` are numbers in it, all other dimensions are symbols.
+    """Return the map of a shape; dimensions that ``known`` contains are inserted as numbers, the others stay symbols.
 
     The keys of ``known`` are names from :func:`symrot.inertia.shapes.scalar_names`.
     """
@@ -99,7 +99,7 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
 @cache
 def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
-    """Return the integral of cos^cosines sin^sines from 0 to pi/2 as (rational factor, power of pi)."""
+    """Return the integral of cos^cosines sin^sines from 0 to pi/2, as a rational factor and a power of pi."""
     if sines > 1:
         rational, power = _quarter_turn(cosines, sines - 2)
         return rational * Fraction(sines - 1, cosines + sines), power
@@ -128,7 +128,7 @@ def _quarters(limit: Polynomial) -> int:
 
 
 def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
-    """Return the integral over all coordinates as a polynomial in the dimensions and ``pi``."""
+    """Return the integral of a polynomial over all coordinates, as a polynomial in the dimensions and ``pi``."""
     for coordinate, lower, upper in limits:
         total = constant(0)
         if coordinate.angle:
@@ -143,7 +143,10 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of a formula's degree in x, y, z, without expanding it; raise ValueError for a call."""
+    """Return an upper bound of a formula's degree in x, y, z without expanding it.
+
+    Raise ValueError if it calls a function.
+    """
     kind = node[0]
     if kind == "number":
         return 0
@@ -206,8 +209,8 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
     """Return the measure of a shape (its volume, area or length), and its moments divided by the measure.
 
-    If the measure does not divide the Jacobian, return 1 and the moments themselves. Dividing before integrating makes
-    a tetrahedron with twelve symbols fast.
+    The Jacobian is divided by the measure before the integration, which saves time for a tetrahedron with twelve
+    symbols. If it is not divisible by the measure, return 1 and the moments themselves.
     """
     measure = integrate(region.jacobian, region.limits)
     share = exact_quotient(region.jacobian, measure)

@@ -71,7 +71,7 @@ def _prefix(where: str) -> str:
 
 
 def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
-    """Return eigenvalues and eigenvectors (columns) by cyclic Jacobi rotations (Golub & Van Loan, section 8.5)."""
+    """Return eigenvalues and eigenvectors (columns) of a tensor by Jacobi's method (Golub & Van Loan, section 8.5)."""
     work = [[Decimal(entry.numerator) / Decimal(entry.denominator) for entry in row] for row in tensor]
     vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
     scale = max(abs(entry) for row in work for entry in row)
@@ -101,7 +101,7 @@ def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
 
 
 def _root(tensor: Tensor, value: Decimal) -> Fraction:
-    """Return the eigenvalue near ``value``: exact if it is a fraction of moderate size, otherwise ``value`` itself."""
+    """Return the exact eigenvalue near ``value`` if it is a fraction of moderate size, otherwise ``value`` itself."""
     approximate = Fraction(value)
     exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
     shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
@@ -113,7 +113,7 @@ def _closest_order(vectors: _Work) -> tuple[int, ...]:
 
 
 def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
-    """Return right-handed principal axes as columns; axis k points in the direction of the given axis k if possible."""
+    """Return principal axes as right-handed columns, ordered and signed so that column k is close to given axis k."""
     for k, column in enumerate(columns):
         leading = column[k] or max(column, key=abs)
         if leading < 0:
@@ -125,7 +125,7 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the moments without rounding errors: zero if negligible, and exactly equal if nearly equal."""
+    """Return moments in which negligible ones are set to zero and nearly equal ones to the same number."""
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:
@@ -207,7 +207,7 @@ def require_admissible(body: Principal, where: str = "") -> None:
 
 
 def why_not_propagable(body: Principal) -> str:
-    """Return a clause that says why Euler's equations do not determine the rates of omega; empty if they do."""
+    """Return the reason why Euler's equations do not determine the rates of omega, or an empty text if they do."""
     if max(body.moments) == 0:
         return "a point has no moments of inertia, so no torque determines its angular acceleration"
     if body.needle:

@@ -23,7 +23,7 @@ DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "point
 
 
 class Dimension(NamedTuple):
-    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg); None means any size."""
+    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg), of any number if None."""
 
     name: str
     meaning: str
@@ -45,7 +45,7 @@ class Coordinate(NamedTuple):
 
     @property
     def angle(self) -> bool:
-        """Whether the coordinate is an angle, which the map uses only inside ``cos`` and ``sin``."""
+        """Whether the coordinate is an angle; the map uses angles only inside ``cos`` and ``sin``."""
         return "pi" in self.upper
 
 
@@ -89,7 +89,10 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula of a component of a point in a tetrahedron; f_1 is 0 at corner 1, 1 on the opposite face."""
+    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, as a function of three fractions.
+
+    The fraction f_1 is 0 at corner 1 and 1 on the opposite face.
+    """
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
@@ -289,7 +292,10 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the numbers in a shape's map and closed forms; :func:`scalars` returns their values."""
+    """Return the names of the dimensions that occur in a shape's map and closed forms.
+
+    :func:`scalars` has their values.
+    """
     names: list[str] = []
     for d in shape.dimensions:
         corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]
@@ -298,7 +304,10 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a map from name to number for the dimensions; corner n of ``vertices`` gives ``xn``, ``yn``, ``zn``."""
+    """Return the dimensions of a shape as a map from name to number.
+
+    Corner n of ``vertices`` gives ``xn``, ``yn``, ``zn``.
+    """
     values: list[Any] = []
     for d in shape.dimensions:
         value = dimensions[d.name]

@@ -57,7 +57,7 @@ _MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbol
 
 @dataclass(frozen=True)
 class Integral:
-    """One integral of a derivation: integrand times Jacobian, limits (coordinate, lower, upper), and value."""
+    """One integral over a shape: integrand times Jacobian, limits (coordinate, lower, upper), and value."""
 
     quantity: str
     integrand: Expr
@@ -169,7 +169,7 @@ def _tidy(expression: Expr) -> Expr:
 
 
 def _tidy_measure(expression: Expr) -> Expr:
-    """Return a volume, area or length as common factors times a sum, such as ``pi*L*(R_2**2 - R_1**2)``."""
+    """Return a volume, area or length with its common factors in front, such as ``pi*L*(R_2**2 - R_1**2)``."""
     return factor_terms(expand(expression))
 
 
@@ -178,7 +178,10 @@ def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
 
 
 def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a polynomial as a SymPy expression; a symbol without a value is pi, or cos or sin of a coordinate."""
+    """Return a polynomial as a SymPy expression.
+
+    Names without a value stand for pi, or for cos or sin of a coordinate.
+    """
     known = {**_CONSTANTS, **values}
     used = {name for monomial in polynomial.terms for name, _ in monomial}
     generators = {name: known[name] if name in known else evaluate(parse(name), known, _FUNCTIONS) for name in used}
@@ -217,7 +220,7 @@ def _properties(
 
 
 def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a quotient of polynomials as an expression in lowest terms."""
+    """Return the quotient of two polynomials as an expression in lowest terms."""
     quotient = exact_quotient(numerator, denominator)
     if quotient is not None:
         return _expression(quotient, values)
@@ -232,7 +235,7 @@ def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
 
 
 def _scalar(value: Any) -> Expr:
-    """Return a number, text or expression as an exact expression; a text may use the symbols of the shapes."""
+    """Return a dimension or mass as an exact expression; a text may contain the symbols of the table of shapes."""
     if isinstance(value, Expr):
         return value
     if isinstance(value, str):
@@ -241,7 +244,7 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return a text as an expression; raise InputError if it uses a name that is not in ``known``."""
+    """Parse a formula and return it as an expression; raise InputError if it uses a name that is not in ``known``."""
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -382,7 +385,7 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return a solid whose density is a polynomial; the integration treats its coefficients as symbols."""
+    """Return the solid of a shape whose density is a polynomial; the integration treats its coefficients as symbols."""
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}

@@ -1,4 +1,4 @@
-"""Exact derivatives of the formulas of kernels, written with the quantities that the values have computed already.
+"""Exact derivatives of the formulas of kernels, which reuse quantities that the kernel computes for its values.
 
 Three rules keep the derivatives short and finite where the values are finite:
 
@@ -35,7 +35,7 @@ def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
     Raises
     ------
     InputError
-        If the derivative of a function in the expression is no formula of kernels.
+        If kernels cannot compute the derivative of a function in the expression.
 
     Examples
     --------
@@ -58,13 +58,16 @@ def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
 
 
 def _plain(expr: Expr, variable: Symbol, back: Mapping[Expr, Expr]) -> Expr:
-    """Return the derivative of an expression without functions of symrot, in which symbols stand for their calls."""
+    """Return the derivative of an expression in which symbols stand for all calls of symrot's own functions.
+
+    In the result each of these symbols is replaced by its call, which ``back`` holds.
+    """
     slope = expr.diff(variable).replace(sign, lambda value: copysign(Integer(1), value))
     return slope.xreplace(dict(back))
 
 
 def _is_outermost(call: Expr, expr: Expr) -> bool:
-    """Return whether an expression contains a call outside all other calls of functions of symrot."""
+    """Return whether a call occurs in an expression outside the arguments of symrot's other functions."""
     if expr == call:
         return True
     if isinstance(expr, AppliedUndef):
@@ -89,7 +92,7 @@ def _slope(call: Expr, variable: Symbol) -> Expr:
 
 
 class Derivatives:
-    """The derivatives of formulas by inputs, through the quantities that the formulas use by a name.
+    """The derivatives of formulas by inputs: the chain rule through the named quantities that the formulas contain.
 
     Parameters
     ----------
@@ -106,7 +109,7 @@ class Derivatives:
         self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
 
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
-        """Return the derivative of a formula by an input; ``value`` is a name of the formula, if it has one."""
+        """Return the derivative of a formula by an input; ``value`` is the symbol for the formula, if there is one."""
         root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
         if value is not None and root_of is not None:
             return self.of(root_of, variable) / (2 * value)
@@ -134,7 +137,7 @@ class Derivatives:
         return self.slopes[key]
 
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
-        """Return the part of a derivative that comes from one quantity with a name."""
+        """Return the term of the chain rule for one named quantity; ``slope`` is the derivative of the quantity."""
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:
             partial = _with_sinc(expr, symbol, partial)
@@ -147,7 +150,10 @@ def _is_product(expr: Expr) -> bool:
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return a derivative by a root in which the sines of its multiples are written as ``x*sinc(x)``."""
+    """Return the derivative ``partial`` of ``expr`` by a root (``symbol``), with ``sin(x)`` written as ``x*sinc(x)``.
+
+    Here x is an angle in a cosine of ``expr``, a multiple of the root; it cancels the division by the root.
+    """
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
     for angle in angles:
         partial = partial.xreplace({sin(angle): angle * sinc(angle)})

@@ -66,7 +66,7 @@ def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
     Raises
     ------
     InputError
-        If the kernel has no such input, an input is named twice, or a derivative is no formula of kernels.
+        If the kernel has no such input, an input is named twice, or kernels cannot compute a derivative.
     """
     chosen = {name: _components(kernel, name) for name in _distinct(kernel, variables)}
     symbols, slopes = _symbols(kernel), Derivatives(kernel.named)
@@ -135,7 +135,7 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of a formula by an input, through the roots that the formula uses by a symbol."""
+    """Return the derivative of a formula by an input: the chain rule through ``roots``, for which symbols stand."""
     through = [
         exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)
         for root, value in roots.items()

@@ -33,7 +33,7 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion that rotates vectors by the quaternion itself, which takes fewer operations than a rotation matrix."""
+    """A motion whose torques rotate vectors by the quaternion, in fewer operations than by the rotation matrix."""
 
     def to_body(self, vector_s: Matrix) -> Matrix:
         named, components = turned(conjugate(self.quaternion), vector_s)

@@ -77,7 +77,7 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the distinct singular values in the first period of 2 pi that contains one, in increasing order."""
+        """Return the singular values in increasing order: those in the first period of 2 pi that contains any."""
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
             if points is not S.EmptySet:
@@ -172,7 +172,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """The data of a :class:`RateMatrix` besides its entries: frame, parameters, determinant, inverse.
+    """The properties of a :class:`RateMatrix` that its entries do not contain: frame, parameters, determinant, inverse.
 
     The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
     the determinant and the inverse with ``variable`` set to x, for x in ``domain``; their limits at the singular values

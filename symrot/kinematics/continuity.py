@@ -70,7 +70,7 @@ def _step(before: Array, after: Array) -> Array:
 
 
 def _take_over(angles: Array, locked: Any, sequence: str) -> None:
-    """Give each locked sample the third angle of the last unlocked sample, and adjust its first angle, in place.
+    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle.
 
     At lock the first and the last rotation are about the same line. If the middle rotation maps the last axis to the
     first axis, the attitude depends on the sum of first and third angle; if it maps the last axis to minus the first

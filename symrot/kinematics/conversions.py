@@ -99,9 +99,10 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the samples and their squared lengths; samples whose squares would overflow or underflow are scaled.
+    """Return the components of samples and their squared lengths; samples of extreme size are scaled.
 
-    A scaled sample is divided by its largest component. Samples that are zero, infinite or NaN become NaN.
+    A sample whose squares would overflow or underflow is divided by its largest component. Samples that are zero,
+    infinite or NaN become NaN.
     """
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -114,7 +115,7 @@ def _in_range(*components: Array) -> tuple[Components, Array]:
 
 
 def _length(*components: Array) -> Array:
-    """Return the lengths of the samples, computed without overflow or underflow; zero for a zero sample."""
+    """Return the lengths of vectors, given by arrays of their components, without overflow or underflow."""
     squares = _sum_of_squares(components)
     length: Array = np.sqrt(squares)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -214,8 +215,8 @@ def dcm_to_quaternion(dcm: Any) -> Array:
     """Return the unit quaternions with ``q0 >= 0``, shape (..., 4), of rotation matrices ``dcm_sb``.
 
     The formula divides by the largest of the four squares ``4 q_i^2``, so that the divisor is never small. A matrix
-    that is not quite a rotation gets the quaternion computed with this divisor; a matrix with determinant <= 0 or with
-    an entry that is not finite gives NaN.
+    that is only nearly a rotation is not corrected first. A matrix with determinant <= 0 or with an entry that is not
+    finite gives NaN.
     """
     dcm = array_of(dcm, 3, 3, what="a dcm")
     return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
@@ -377,7 +378,7 @@ def mrp_shadow(s: Any) -> Array:
 
 @np.errstate(all="ignore")
 def mrp_switch(s: Any) -> tuple[Array, Mask]:
-    """Return the shorter of each set s and its shadow ``-s / |s|^2``, shape (..., 3), and a mask of switched rows.
+    """Return, for each row s, the shorter of s and its shadow ``-s / |s|^2``, and a mask of the switched rows.
 
     A propagation in modified Rodrigues parameters that switches whenever ``|s| > 1`` never exceeds ``|s| = 1``.
     """
@@ -390,7 +391,10 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return (axes, angle indices, m, sign) of the factors of ``dcm_sb``, with ``e_1 x e_2 = sign e_m``."""
+    """Return the axes of the three rotations whose product is ``dcm_sb``, and which angle belongs to each.
+
+    Also return m and sign with ``e_1 x e_2 = sign e_m`` for the axes of the first two rotations of the product.
+    """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
@@ -486,7 +490,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return ``x + y`` for x and y in [-pi/2, pi/2], rounded once; where ``odd``, the sum minus or plus pi."""
+    """Return ``x + y`` for x and y in [-pi/2, pi/2], rounded once; where ``odd`` is true, shifted by pi toward zero."""
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)

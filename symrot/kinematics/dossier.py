@@ -45,7 +45,7 @@ class LockedPoint:
 
     @property
     def combination(self) -> Expr:
-        """The sum or difference of first and third angle on which alone the attitude depends at gimbal lock."""
+        """The sum or difference of the first and the third angle; at gimbal lock the attitude depends on it alone."""
         first, _, third = symbols.angles
         return first - third * self.silent_rates[0] / self.silent_rates[2]
 
@@ -66,7 +66,7 @@ class SingularityDossier:
         Sequences that are regular at every attitude where this sequence locks.
     partly_regular : dict of str to Set
         Sequences that lock at only some of those attitudes. The set contains the values of phi (intrinsic) or psi
-        (extrinsic) at which they lock, if the other outer angle is zero.
+        (extrinsic) at which they lock while the other of the two angles is zero.
     singular_sequences : tuple of str
         Sequences that lock wherever this sequence locks.
 
@@ -103,7 +103,7 @@ class SingularityDossier:
         return self.jacobian_b.limits
 
     def text(self) -> str:
-        """Return the dossier as text; a sequence always gives the same bytes."""
+        """Return the dossier as text; the same sequence always gives the same bytes."""
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [

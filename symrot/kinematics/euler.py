@@ -51,7 +51,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One factor of ``dcm_sb``: axis number, angle, and the index of that angle in order of application."""
+    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the index of this angle."""
 
     axis: int
     angle: Expr
@@ -134,7 +134,7 @@ def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
 
 
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
-    """Return ``carry, core, order``, the factors of the rate matrix ``B = carry * core * order``.
+    """Return the factors ``carry, core, order`` of the rate matrix ``B = carry * core * order``.
 
     The columns of ``core`` are the three rotation axes in the frame of the middle rotation, where only the middle angle
     occurs. ``carry`` rotates them to body or space components, and ``order`` sorts the columns in order of application.
@@ -279,12 +279,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, the set of gimbal-lock attitudes of ``sequence`` at which it locks too.
+    """Return, for each other sequence, at which of the gimbal-lock attitudes of ``sequence`` it is locked too.
 
-    In gimbal lock the attitude depends on one combination of the first and the last angle; so the angle of the right
-    factor is set to zero here, and an attitude is given by the angle of the left factor (phi if intrinsic, psi if
-    extrinsic). The set is empty for a sequence that is regular at all these attitudes, and contains all real numbers
-    for a sequence that locks at all of them.
+    In gimbal lock the attitude depends on one combination of the first and the last angle. So one of the two is set to
+    zero here: the last angle of an intrinsic sequence, the first of an extrinsic one. The set contains values of the
+    other angle. It is empty for a sequence that is regular at all these attitudes, and contains all real numbers for a
+    sequence that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle

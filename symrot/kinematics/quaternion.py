@@ -122,7 +122,7 @@ def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
 
 
 def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return expressions that are zero for a rotation matrix: its rows and columns are right-handed and orthonormal."""
+    """Return expressions in the entries of a matrix that are all zero if and only if the matrix is a rotation."""
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
@@ -188,7 +188,7 @@ def _dcm(q: tuple[Expr, ...], form: str) -> ImmutableMatrix:
 
 
 def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
-    """Return a quaternion of a dcm, computed by division by component ``q_pivot``, shape (4, 1).
+    """Return a quaternion of a dcm, shape (4, 1), by a formula that divides by the component ``q_pivot``.
 
     The result is row ``pivot`` of the matrix ``4 q q^T``, whose entries are linear in the dcm, divided by ``2 sqrt`` of
     its diagonal entry. All four pivots give the same quaternion up to sign, if the divisor is not zero. The pivot with

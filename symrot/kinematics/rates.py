@@ -36,7 +36,7 @@ def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
 
 
 def _turn(vector: Array, axis: int, angle: Array) -> Array:
-    """Return vectors rotated about a coordinate axis by an angle (rad), right-handed."""
+    """Rotate vectors about a coordinate axis by an angle (rad), right-handed, and return them."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
     shape = np.broadcast_shapes(vector.shape[:-1], angle.shape)
     turned: Array = np.broadcast_to(vector, (*shape, 3)).copy()

@@ -32,7 +32,7 @@ class Projection:
     about: str
 
     def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-        """Return the parameters of a unit quaternion, shape (3, 1); they are infinite where centre + q0 = 0."""
+        """Return the parameters of a unit quaternion, shape (3, 1); they are infinite if ``centre + q0 = 0``."""
         q0, *vector = expressions(q, 4, "a quaternion")
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])
 
@@ -49,7 +49,7 @@ class Projection:
         return ImmutableMatrix([1 - square, *(2 * component for component in p)])
 
     def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
-        """Return the norm of :meth:`homogeneous`: a polynomial if modified, a square root if classical."""
+        """Return the norm of the quaternion :meth:`homogeneous`: a polynomial if modified, a root if classical."""
         base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
         return base ** (exponent / 2)
 

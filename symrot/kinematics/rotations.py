@@ -38,7 +38,10 @@ def check_frame(frame: str) -> str:
 
 
 def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
-    """Return ``values`` as a tuple of SymPy expressions; raise ``InputError`` unless there are exactly ``size``."""
+    """Return ``values`` as a tuple of SymPy expressions.
+
+    Raise ``InputError`` unless there are exactly ``size`` of them.
+    """
     formulas = tuple(sympify(value) for value in values)
     if len(formulas) != size:
         raise InputError(f"expected {size} values for {what}, got {len(formulas)}: {formulas}")
@@ -46,7 +49,7 @@ def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
 
 
 def axis_number(axis: int | str) -> int:
-    """Return the number 0, 1 or 2 of an axis that is given as this number or as a letter X, Y, Z (either case)."""
+    """Return the number 0, 1 or 2 of a coordinate axis, given as a number or as a letter X, Y, Z (either case)."""
     if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:

@@ -18,8 +18,8 @@ Value = TypeVar("Value")
 class Cursor:
     """A position in a row of items of the LaTeX tree, from which the next item is read.
 
-     Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
-     item are separate items after it.
+    Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
+    item are separate items after it.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Cursor:
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Move to the beginning of another row of the LaTeX tree, or of a single item, read as a row."""
+        """Move to the beginning of another row of the LaTeX tree, or to a single item as if it were a row."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))
@@ -68,7 +68,7 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Return the value that ``read`` gives for a whole row or item of the tree; keep the position of the cursor."""
+        """Call ``read`` with the cursor at the start of another row or item, and return its value; then move back."""
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
@@ -79,7 +79,7 @@ class Cursor:
         return value
 
     def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
-        """Return the values, separated by commas, up to the closing bracket, and move past the bracket."""
+        """Parse values, separated by commas, up to the closing bracket; return them and move past the bracket."""
         bars, self.open_bars = self.open_bars, ()
         values = [read()]
         while self.take(","):
@@ -89,7 +89,10 @@ class Cursor:
         return values
 
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
-        """Return the value between two bars; the cursor is after the opening bar, and moves past the closing bar."""
+        """Parse a value between two bars and return it.
+
+        The cursor is after the opening bar, and moves past the closing bar.
+        """
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()
         self.expect(bar)
@@ -119,7 +122,7 @@ class Cursor:
             raise self.fail(f"'{text}'")
 
     def script(self, mark: str) -> Script | None:
-        """Return the next item and move past it, if it is a script with this mark (``_``, ``^`` or ``'``).
+        """Return the next item, and move past it, if it is a script with this mark (``_``, ``^`` or ``'``).
 
         Otherwise return None and stay.
         """

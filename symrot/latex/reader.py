@@ -1,4 +1,4 @@
-"""The parser of LaTeX: it turns tokens into the tree of a formula, or raises InputError with the place of a mistake."""
+"""The parser of LaTeX: it turns tokens into the tree of a formula, or raises InputError with an error's position."""
 
 from collections.abc import Callable, Sequence
 
@@ -15,7 +15,7 @@ AFTER = frozenset(["script", "prime", "space"])
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
-    """Return the tree of a LaTeX formula; ``pieces``, if passed, are the tokens to use.
+    """Return the tree of a LaTeX formula. If ``pieces`` are passed, these tokens are parsed instead of ``source``.
 
     Raises
     ------
@@ -35,9 +35,9 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Read items up to a token whose kind or text is in ``stops``, which stays unread; return the items as a row.
+        """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items.
 
-        ``closing`` is the text that the message expects if the formula ends before.
+        ``closing`` is the text that the message expects if the formula ends too early.
         """
         items: list[Node] = []
         first = token = self.tokens[self.place]
@@ -53,13 +53,13 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Read a row of items and the token that closes it, such as a brace; return the row."""
+        """Parse a row of items and the token that closes it, such as a brace; return the row."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(_with_old_fractions(row).items, opening.start, row.end)
 
     def item(self) -> Node:
-        """Read an item with its scripts (index, power and primes) and return its node."""
+        """Parse an item with its scripts (index, power and primes) and return its node."""
         base = self.atom()
         scripts: dict[str, Script] = {}
         while base.kind != "space" and (mark := self.mark()):
@@ -74,7 +74,7 @@ class _Reader:
         return Scripts(base, tuple(scripts.values()), base.start)
 
     def mark(self) -> Token | None:
-        """Return the mark of a script (index, power, primes) if it comes next, and move past it; otherwise None."""
+        """Return the mark of the next script (index, power, primes) and move past it; None if no script follows."""
         place = self.place
         while self.tokens[place].kind == "space":
             place += 1
@@ -85,7 +85,7 @@ class _Reader:
         return token
 
     def argument(self) -> Node:
-        """Read and return the argument of a command: a group in braces, a single item, or one digit, as in LaTeX."""
+        """Parse and return the argument of a command: a group in braces, a single item or, as in LaTeX, one digit."""
         while self.tokens[self.place].kind == "space":
             self.place += 1
         token = self.tokens[self.place]
@@ -146,7 +146,7 @@ class _Reader:
 
 
 def _with_old_fractions(row: Row) -> Row:
-    """Return a row of which ``above \\over below`` is one fraction."""
+    r"""Return a row in which ``above \over below`` has become a fraction."""
     place = next((n for n, item in enumerate(row.items) if item.text == "\\over"), None)
     if place is None:
         return row

@@ -1,4 +1,4 @@
-"""The tokens of LaTeX, with their positions; ``\\left(`` is one token, and so is ``\\begin{matrix}``."""
+r"""Splitting LaTeX into tokens with positions; ``\left(`` is one token, and so is ``\begin{matrix}``."""
 
 import re
 from typing import NamedTuple
@@ -34,7 +34,7 @@ _KINDS = {f"\\{name}": kind for kind, names in _COMMANDS.items() for name in nam
 
 
 class Token(NamedTuple):
-    """A token of LaTeX; ``kind`` is for example ``letter`` or ``command``, ``start`` the position in the source."""
+    """A token of LaTeX; ``kind`` is for example ``letter`` or ``command``, ``start`` is its position in the source."""
 
     kind: str
     text: str

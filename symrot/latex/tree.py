@@ -1,6 +1,6 @@
 """The tree of a LaTeX formula: how the formula is written, without its meaning.
 
-Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because only the meaning decides
+Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because only the meaning tells
 which bracket closes which and what is a product. Every node has ``start``, its position in the source, ``text``, its
 first command or mark, and ``kind``, which is the same for all nodes of a class, except for tokens.
 """
@@ -53,7 +53,7 @@ class Script(Command):
 
 @dataclass(frozen=True)
 class Scripts:
-    """An item with its scripts: first indices and primes, in the order in which they are written, then the power."""
+    """An item with its scripts: first indices and primes, in the order in which they are written; last the power."""
 
     base: "Node"
     scripts: tuple[Script, ...]
@@ -107,14 +107,14 @@ Node = Token | Row | Accent | Font | Script | Scripts | Fraction | Root | Delimi
 
 
 def alone(node: Node) -> Node:
-    """Return the only item of nested groups in braces; return any other node unchanged."""
+    """Return the only item inside nested groups in braces, x for ``{{x}}``; return any other node unchanged."""
     while isinstance(node, Row) and len(node.items) == 1:
         node = node.items[0]
     return node
 
 
 def divided(row: Row, mark: str) -> list[Row]:
-    """Split a row at the tokens ``mark``; return the rows between them."""
+    """Split a row at all tokens with the text ``mark``; return the rows between them."""
     rows, first = [], 0
     for place, item in enumerate(row.items):
         if item.text == mark:

@@ -1,1 +1,1 @@
-"""Lessons: what a page of a derivation has for students beside its steps."""
+"""Lessons: question, numbers, a common mistake and links for students, added to the pages of derivations."""

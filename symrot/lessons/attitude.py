@@ -9,14 +9,13 @@ UPRIGHT = {s.phi: Integer(0), s.psi: Integer(0)}  # precession and spin of heavy
 
 LESSONS = {
     "rotation_matrices": Lesson(
-        question="What is a rotation, as a matrix, and why do three numbers fix it although it has nine entries?",
+        question="Which matrices are rotations, and why do three numbers determine a matrix of nine entries?",
         before=(),
         mistake=Mistake(
-            "Some books rotate the vector, others rotate the axes under a vector that stays. Students mix the two and "
-            "put "
-            "the minus sign in the wrong corner.",
+            "Some books rotate the vector, other books rotate the axes and leave the vector unchanged. Students mix "
+            "the two and put the minus sign at the wrong place.",
             "Rz(alpha) == Matrix([[cos(alpha), sin(alpha), 0], [-sin(alpha), cos(alpha), 0], [0, 0, 1]])",
-            lesson="To find the sign, rotate the first axis by a small positive angle: it moves towards the second "
+            lesson="To find the sign, rotate the first axis by a small positive angle: it moves toward the second "
             "axis.",
         ),
         worked="matrix_entry",
@@ -27,25 +26,25 @@ LESSONS = {
         question="A body rotates about a slanted axis. Where does each of its points go?",
         before=("rotation_matrices",),
         mistake=Mistake(
-            "The trace of a rotation of the plane is $2\\cos\\alpha$. In space students forget the axis, which stays "
-            "and "
-            "adds 1.",
+            r"The trace of a rotation of the plane is $2\cos\alpha$. For a rotation in space, students forget the "
+            "axis, which is unchanged and adds 1.",
             "trace(Rz(alpha)) == 2*cos(alpha)",
             lesson="So the angle follows from $\\cos\\alpha = (\\mathrm{tr}\\,R - 1)/2$.",
         ),
         scene="axisymmetric_satellite",
         numbers=(
             Number(
-                "The satellite starts inclined. The first entry of its matrix says how its first axis leans:",
+                "The satellite starts in an inclined attitude. The first entry of its rotation matrix is the cosine "
+                "of the angle by which its first axis is inclined:",
                 "R_{11}",
-                "All nine entries.",
+                "The rotation matrix in terms of axis and angle.",
                 "1",
                 entry=0,
             ),
             Number(
-                "The cosine of its angle, from the trace of that matrix:",
+                "The cosine of the rotation angle, from the trace of this matrix:",
                 "\\cos\\alpha",
-                "The trace gives the cosine.",
+                "The trace gives the cosine of the angle.",
                 "1",
             ),
         ),
@@ -69,22 +68,23 @@ LESSONS = {
         question="How do three Euler angles become the four numbers of a quaternion, and why do half angles appear?",
         before=("composition",),
         mistake=Mistake(
-            "The quaternion of a rotation contains half its angle. Students put in the whole one.",
+            "The quaternion of a rotation contains half the rotation angle. Students put in the whole angle.",
             "dcm_of(Matrix([cos(alpha), 0, 0, sin(alpha)])) == Rz(alpha)",
-            lesson="A quaternion stands on both sides of the vector, in $q\\,v\\,\\bar q$, and each side rotates by "
-            "half.",
+            lesson=r"The quaternion occurs on both sides of the vector, in $q\,v\,\bar q$, and each side rotates the "
+            "vector by half the angle.",
         ),
         scene="heavy_top_loops",
         numbers=(
             Number(
-                "The top starts with the precession 0, the nutation of 30 degrees and the spin 0. Its quaternion has",
+                "The top starts with the precession 0, the nutation 30 degrees and the spin 0. Its quaternion has the "
+                "component",
                 "q_0",
-                "The product of the three turns.",
+                "The quaternion is the product of three factors",
                 "1",
                 entry=0,
                 where=UPRIGHT,
             ),
-            Number("and", "q_1", "The product of the three turns.", "1", entry=1, where=UPRIGHT),
+            Number("and", "q_1", "The quaternion is the product of three factors", "1", entry=1, where=UPRIGHT),
         ),
         kernel="euler_zxz_quaternion",
         topic="quaternions",

@@ -10,14 +10,14 @@ NORMAL = dict(zip(s.normal, s.rotation_entries[6:9], strict=True))  # the third 
 
 LESSONS = {
     "heavy_top_invariants": Lesson(
-        question="Gravity acts on a spinning top. What stays constant all the same?",
+        question="Gravity acts on a spinning top. Which quantities are constant nevertheless?",
         before=("free_body_invariants", "work_and_power"),
         mistake=Mistake(
-            "The point of support is fixed, so students take the weight to have no moment about it.",
+            "The point of support is fixed, so students think that the weight has no moment about it.",
             "cross(Matrix([a, b, c]), Matrix([0, 0, -W])) == Matrix([0, 0, 0])",
             facts=("W > 0",),
-            lesson="Only the moment about the vertical is zero, so only that component of angular momentum is "
-            "constant.",
+            lesson="Only the vertical component of the moment is zero, so only the vertical component of the angular "
+            "momentum is constant.",
         ),
         worked="momentum_about_vertical",
         kernel="heavy_top",
@@ -27,9 +27,8 @@ LESSONS = {
         question="Why does a spinning top not fall?",
         before=("heavy_top_invariants", "kinetic_energy", "lagrange_and_euler"),
         mistake=Mistake(
-            "The formula $n = W c / p_\\psi$ is exact for a level axis, and nearly right for a fast top. Students use "
-            "it "
-            "for every top.",
+            r"The formula $n = W c / p_\psi$ is exact for a horizontal axis, and nearly right for a fast top. "
+            "Students use it for every top.",
             "n == W*c/p",
             facts=("A*n**2*cos(theta) - p*n + W*c == 0", "A > 0", "p > 0", "W > 0", "c > 0"),
             lesson="The condition is quadratic: an inclined top has two rates of steady precession.",
@@ -37,16 +36,16 @@ LESSONS = {
         scene="heavy_top_loops",
         numbers=(
             Number(
-                "The slow precession of the top, by the formula for a level axis, is about",
+                "By the formula for a horizontal axis, the slow precession of the top is about",
                 "n",
-                "With a level axis there is one rate.",
+                "With a horizontal axis there is only one rate.",
                 "rad/s",
                 entry=0,
             ),
             Number(
-                "The top could sleep upright, for its spin is above the bound:",
+                "The top could sleep upright, because its spin is above the bound:",
                 "p_\\psi^2 - 4 A W c_3",
-                "The same bound makes the two rates",
+                r"At the bound $p_\psi^2 = 4 A W c_3$",
                 "kg^2 m^4/s^2",
             ),
         ),
@@ -57,15 +56,16 @@ LESSONS = {
         question="A spinning wheel hangs on one end of its axle and does not drop. What holds it up?",
         before=("angular_momentum", "euler_body_rates"),
         mistake=Mistake(
-            "The angular momentum that the torque turns is that of the spin. Students use the moment across the axle.",
+            "The torque rotates the angular momentum of the spin. Students use the moment of inertia about a "
+            "transverse axis instead.",
             "dphi == W*c/(A*dpsi)",
             facts=("C*dphi*dpsi == W*c", "A > 0", "C > 0", "W > 0", "c > 0", "dpsi > 0"),
-            lesson="With a level axle the moment $A$ across it does not enter at all.",
+            lesson="With a horizontal axle, the moment $A$ about a transverse axis does not occur.",
         ),
         scene="precessing_wheel",
         numbers=(
             Number(
-                "The moment of the weight about the support:",
+                "The moment of the weight about the support is",
                 "W c_3",
                 "The weight $W$ of the wheel",
                 "N m",
@@ -73,9 +73,9 @@ LESSONS = {
                 where={s.phi: Integer(0)},
             ),
             Number(
-                "The wheel is started with just the precession that this moment keeps going, and nothing is left over:",
+                "The wheel starts with exactly the precession that this moment maintains, so the difference is zero:",
                 "W c_3 - C\\,\\dot\\phi\\,\\dot\\psi",
-                "Pushed round faster than that",
+                "If the axle is pushed around faster than this",
                 "N m",
                 where={s.dphi: s.omega_z, s.dpsi: s.omega_x},
             ),
@@ -84,37 +84,39 @@ LESSONS = {
         topic="gyroscopes",
     ),
     "gyrostat_invariants": Lesson(
-        question="A satellite carries a spinning wheel. What does the wheel do to its motion?",
+        question="A satellite contains a spinning wheel. How does the wheel change the motion of the satellite?",
         before=("euler_equations", "free_body_invariants"),
         mistake=Mistake(
-            "The wheel is inside, so students leave its angular momentum out of the gyroscopic term.",
+            "The wheel is inside the body, so students omit its angular momentum in the gyroscopic term.",
             "cross(Matrix([a, b, c]), Matrix([A*a, A*b, A*c + h])) == cross(Matrix([a, b, c]), Matrix([A*a, A*b, "
             "A*c]))",
             facts=("A > 0", "h > 0"),
             repair=None,
-            lesson="The body turns the angular momentum of the wheel as well, and that takes a torque.",
+            lesson="The rotation of the body also rotates the angular momentum of the wheel, and this needs a torque.",
         ),
         worked="reaction_wheel",
         kernel="torque_rotor",
         topic="gyroscopes",
     ),
     "gravity_gradient": Lesson(
-        question="Why does a long satellite point to the Earth without any motor?",
+        question="Why does a long satellite keep pointing to the Earth without a motor?",
         before=("euler_equations", "angular_momentum"),
         mistake=Mistake(
-            "The torque goes with $\\sin\\theta\\cos\\theta$. Students take a pendulum's $\\sin\\theta$.",
+            r"The torque is proportional to $\sin\theta\cos\theta$. Students use the factor $\sin\theta$ of a "
+            "pendulum.",
             "3*n**2*sin(theta)*cos(theta) == 3*n**2*sin(theta)",
             facts=("n > 0",),
             repair=None,
-            lesson="The tide pulls both ends: at a right angle the torque is zero again, unlike that of a pendulum.",
+            lesson="The tidal forces pull at both ends, so the torque is zero also at a right angle, unlike the "
+            "torque on a pendulum.",
         ),
         scene="gravity_gradient_satellite",
         numbers=(
             Number(
-                "At the start the satellite is inclined by 20 degrees. The torque about the normal of the orbit that "
-                "brings it back is",
+                "At the start the satellite is inclined by 20 degrees. The torque that brings it back, about the "
+                "normal of the orbit, is",
                 "k \\cdot \\tau",
-                "What the orbit gives in energy",
+                "The angular momentum about the normal of the orbit",
                 "N m",
                 where=RADIUS | NORMAL,
             ),

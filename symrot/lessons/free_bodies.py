@@ -15,11 +15,11 @@ DESCENDING = {
 
 LESSONS = {
     "free_body_invariants": Lesson(
-        question="No torque acts on a body. Which quantities stay as they are?",
+        question="No torque acts on a body. Which quantities are constant?",
         before=("euler_equations", "kinetic_energy"),
         mistake=Mistake(
-            "The length of the angular momentum is constant, so students take the length of the angular velocity to be "
-            "constant too.",
+            "The length of the angular momentum is constant, so students think that the length of the angular "
+            "velocity is constant too.",
             "omega_1*domega_1 + omega_2*domega_2 + omega_3*domega_3 == 0",
             facts=(
                 "domega_1 == (B - C)*omega_2*omega_3/A",
@@ -29,19 +29,20 @@ LESSONS = {
                 "B > 0",
                 "C > 0",
             ),
-            lesson="It is constant only if two moments are equal, or the body rotates about a principal axis.",
+            lesson="The length of the angular velocity is constant only if two moments are equal, or if the body "
+            "rotates about a principal axis.",
         ),
         scene="t_handle",
         numbers=(
             Number(
-                "The energy of the handle stays at",
+                "The kinetic energy of the handle is constant:",
                 "E",
-                "Along principal axes, in angular velocity",
+                "Along principal axes, the energy is",
                 "J",
                 page="kinetic_energy",
             ),
             Number(
-                "and the constant of its polhode seen along axis 3 at",
+                "The following constant describes the projection of its polhode along axis 3:",
                 "|L|^2 - 2 C E",
                 "Along principal axes, a combination",
                 "kg^2 m^4/s^2",
@@ -51,31 +52,32 @@ LESSONS = {
         topic="free_bodies",
     ),
     "spherical_body": Lesson(
-        question="A ball and a cube rotate alike. What is special about three equal moments?",
+        question="A ball and a cube can rotate in the same way. What follows from three equal moments?",
         before=("euler_equations", "tensor_rotation"),
         mistake=Mistake(
-            "For a ball, angular momentum is along the angular velocity. Students expect this of a disk as well.",
+            "For a ball, the angular momentum is parallel to the angular velocity. Students expect this of a disk too.",
             "cross(Matrix([a, b, c]), Matrix([A*a, A*b, C*c])) == Matrix([0, 0, 0])",
-            lesson="For a disk the two vectors are parallel only along the axis or across it.",
+            lesson="For a disk the two vectors are parallel only if the angular velocity is along the symmetry axis "
+            "or perpendicular to it.",
         ),
         worked="driven_acceleration",
         kernel="euler_equations_spherical",
         topic="euler_equations",
     ),
     "symmetric_spin": Lesson(
-        question="Why does a spinning top keep its spin while it wobbles?",
+        question="Why is the spin of a top constant while the top wobbles?",
         before=("euler_equations",),
         mistake=Mistake(
-            "The spin $\\omega_3$ and the rate $\\dot\\psi$ of the spin angle have similar names. Students set them "
-            "equal.",
+            r"The spin $\omega_3$ is not the rate $\dot\psi$ of the spin angle. Students set the two equal because of "
+            "their similar names.",
             "omega_3 == dpsi",
             facts=("omega_3 == dpsi + dphi*cos(theta)",),
-            lesson="The precession has a part along the axis too.",
+            lesson="The precession also has a component along the symmetry axis.",
         ),
         scene="spin_up",
         numbers=(
             Number(
-                "A torque along the axis changes the spin of the satellite at the rate",
+                "A torque along its symmetry axis changes the spin of the satellite at the rate",
                 "\\dot\\omega_3",
                 "Only the torque about the axis changes the spin.",
                 "rad/s^2",
@@ -85,11 +87,12 @@ LESSONS = {
         topic="free_bodies",
     ),
     "symmetric_top": Lesson(
-        question="A plate thrown into the air wobbles. How fast, compared with its spin?",
+        question="A plate that is thrown into the air wobbles. How fast is the wobble compared with the spin?",
         before=("symmetric_spin", "euler_body_rates"),
         mistake=Mistake(
-            "Feynman told of a plate in the cafeteria of Cornell. A plate has $C = 2 A$, and for a small wobble the "
-            "precession is at the rate $C \\omega_3 / A$. His story had the ratio upside down.",
+            "Feynman told a story about a plate in the cafeteria of Cornell. A plate has $C = 2 A$, and for a small "
+            r"wobble the precession has the rate $C \omega_3 / A$. His story had the inverse ratio, and students "
+            "repeat it.",
             "dphi == omega_3/2",
             facts=("dphi == C*omega_3/A", "C == 2*A", "A > 0"),
             lesson="The plate wobbles twice as fast as it spins.",
@@ -97,17 +100,17 @@ LESSONS = {
         scene="axisymmetric_satellite",
         numbers=(
             Number(
-                "The axis of the satellite goes round the angular momentum at the rate",
+                "The symmetry axis of the satellite moves around the angular momentum at the rate",
                 "\\dot\\phi",
-                "Precession and spin are constant",
+                "The rates of precession and spin angle",
                 "rad/s",
                 entry=0,
             ),
             Number(
-                "The ratio of its spin angle's rate to the part of the precession along the axis is positive, so that "
+                "The ratio of the spin angle's rate to the component of the precession along the axis is positive, so "
                 "the precession is direct:",
                 "\\frac{\\dot\\psi}{\\dot\\phi \\cos\\theta}",
-                "Their ratio does not depend on the motion.",
+                "The ratio of both does not depend on the motion.",
                 "1",
             ),
         ),
@@ -115,31 +118,31 @@ LESSONS = {
         topic="free_bodies",
     ),
     "intermediate_axis": Lesson(
-        question="A spinning wing nut or tennis racket flips over by itself. About which axis, and how fast?",
+        question="A spinning wing nut or tennis racket flips over by itself. About which axis must it spin, and how "
+        "fast does it flip?",
         before=("euler_equations", "free_body_invariants"),
         mistake=Mistake(
-            "The two moments below the line are those of the other two axes. Students put the moment of the spin axis "
-            "there, which they have just used.",
+            "The denominator contains the moments about the other two axes. Students put the moment about the spin "
+            "axis there, which they have just used.",
             "rate**2 == Omega**2*(A - B)*(B - C)/B**2",
             facts=("rate**2 == Omega**2*(A - B)*(B - C)/(A*C)", "A > 0", "B > 0", "C > 0"),
-            lesson="The disturbance is across the axis, so it meets the moments across the axis.",
+            lesson="The disturbance is perpendicular to the spin axis, so the moments about the two other axes matter.",
         ),
         scene="t_handle",
         numbers=(
             Number(
-                "The handle spins about its intermediate axis, its third: its moments in descending order are $B$, "
-                "$C$, "
+                "The handle spins about its intermediate axis, axis 3: its moments in descending order are $B$, $C$, "
                 "$A$. A disturbance grows at the rate",
                 "\\lambda",
-                "About the intermediate axis it grows.",
+                "About the intermediate axis, a disturbance grows",
                 "1/s",
                 power=Rational(1, 2),
                 where={s.C: s.A, s.delta_1: s.C - s.A, s.delta_2: s.B - s.C, s.Omega: s.omega_3},
             ),
             Number(
-                "so that it becomes e times as large in",
+                "A disturbance becomes e times as large in",
                 "1/\\lambda",
-                "About the intermediate axis it grows.",
+                "About the intermediate axis, a disturbance grows",
                 "s",
                 power=Rational(-1, 2),
                 where={s.C: s.A, s.delta_1: s.C - s.A, s.delta_2: s.B - s.C, s.Omega: s.omega_3},
@@ -149,22 +152,21 @@ LESSONS = {
         topic="stability",
     ),
     "poinsot": Lesson(
-        question="Can the motion of a free body be seen without solving an equation?",
+        question="Can the motion of a free body be described by geometry, without solving an equation?",
         before=("free_body_invariants",),
         mistake=Mistake(
-            "The distance of the plane is $\\omega \\cdot L / |L|$. Students put the energy for $\\omega \\cdot L$, "
-            "which is "
-            "twice the energy.",
+            r"The distance of the invariable plane from the centre is $\omega \cdot L / |L|$. Students put the energy "
+            r"for $\omega \cdot L$, which is twice the energy.",
             "d == T/H",
             facts=("d*H == 2*T", "H > 0", "T > 0"),
-            lesson="Kinetic energy has a half, $T = \\frac12\\,\\omega \\cdot L$; the distance has none.",
+            lesson=r"The kinetic energy has a factor one half, $T = \frac12\,\omega \cdot L$; the distance does not.",
         ),
         scene="t_handle",
         numbers=(
             Number(
-                "The distance of the plane from the centre:",
+                "The distance of the invariable plane from the centre is",
                 "\\frac{2 T}{|L|}",
-                "Its distance from the centre",
+                "The distance of the tangent plane from the centre",
                 "rad/s",
                 entry=0,
                 scale=1 / s.H,
@@ -174,28 +176,29 @@ LESSONS = {
         topic="free_bodies",
     ),
     "free_asymmetric_body": Lesson(
-        question="A body with three different moments tumbles freely. Is there a formula for its motion?",
+        question="A body with three different moments rotates freely. Is there a formula for its motion?",
         before=("poinsot", "intermediate_axis"),
         mistake=Mistake(
-            "The function dn looks like a cosine. Students forget its parameter.",
+            r"The function dn looks like a cosine. Students forget its parameter $\mu$ in the quadratic relation.",
             "dn**2 == 1 - sn**2",
             facts=("dn**2 == 1 - mu*sn**2",),
-            lesson="That is the function cn. The two are equal only on the separatrix, at $\\mu = 1$.",
+            lesson="The student's relation is the relation of cn. The functions dn and cn are equal only on the "
+            r"separatrix, at $\mu = 1$.",
         ),
         scene="tumbling_prism_largest",
         numbers=(
             Number(
-                "The moments of the prism in descending order are $C$, $B$, $A$. Its frequency is",
+                "The moments of the prism in descending order are $C$, $B$, $A$. The frequency of its motion is",
                 "p",
-                "The frequency.",
+                "They give the frequency.",
                 "rad/s",
                 power=Rational(1, 2),
                 where=DESCENDING,
             ),
             Number(
-                "and its parameter is so small that the motion is nearly a sine:",
+                "The parameter is so small that the motion is nearly sinusoidal:",
                 "\\mu",
-                "The parameter.",
+                "They give the parameter.",
                 "1",
                 where=DESCENDING,
             ),

@@ -1,4 +1,4 @@
-"""What a page has for students: a question, what is needed before, numbers, a mistake, and where to go on."""
+"""The data of a lesson: a question, the required pages, numbers of a scene, a common mistake, and links."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ class Mistake:
     Attributes
     ----------
     words : str
-        How one comes to write it: a sentence before the formula.
+        How students come to write the formula: a sentence that precedes it on the page.
     claim : str
         The formula in the language of claims.
     facts : tuple of str
@@ -23,9 +23,9 @@ class Mistake:
     body : str
         The body in words, as ``symrot check --body`` takes it.
     lesson : str
-        What is right: a sentence after the verdict.
+        The correct statement: a sentence that follows the verdict on the page.
     repair : int or None
-        Which of the checker's repairs the page prints; None for none, where they are true but lead elsewhere.
+        Index of the checker's repair (corrected formula) that the page prints; None if no repair helps the student.
 
     Examples
     --------
@@ -43,30 +43,30 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Number:
-    """A number that follows from the formula of a step for a scene.
+    """A number on a page: the formula of one of its steps, evaluated with the numbers of a scene.
 
     Attributes
     ----------
     words : str
-        What the number is: a sentence, which ends with a colon.
+        The sentence that introduces the number on the page.
     name : str
-        Its name, LaTeX.
+        Name of the number, LaTeX.
     step : str
-        How the claim of the step begins. The formula is the displayed right side if that is an expression, otherwise
-        the right side as it was derived.
+        The first words of the step's claim. The formula is the right side that the page displays if it is an
+        expression, otherwise the derived right side.
     unit : str
     entry : int or None
-        Which entry of a right side that is a matrix, row by row from 0.
+        Index of the entry if the right side is a matrix, counted row by row from 0.
     where : mapping of Symbol to Expr
-        Values of symbols that are not numbers of the scene, in terms of symbols that are.
+        Expressions for symbols that have no value in the scene, in terms of symbols that have one.
     power : Rational
-        The power of the formula that is the number, such as 1/2 for a rate whose square the step gives.
+        Exponent that is applied to the formula, such as 1/2 for a rate whose square the step gives.
     scale : Expr
-        A factor of that power.
+        Factor by which this power is multiplied.
     section : str
-        The title of the section of the step, if several steps have one claim.
+        Title of the section that contains the step; needed if several steps have the same claim.
     page : str
-        The derivation of the step, if it is on another page.
+        Name of the derivation that contains the step, if it is on another page.
 
     Examples
     --------
@@ -88,27 +88,27 @@ class Number:
 
 @dataclass(frozen=True)
 class Lesson:
-    """What the page of one derivation has for students.
+    """The additions for students to the page of one derivation.
 
     Attributes
     ----------
     question : str
         The question that the page answers, as a student would ask it.
     before : tuple of str
-        Names of the pages that are needed before.
+        Names of the pages that a student should read before.
     mistake : Mistake
     scene : str
-        Name of the shipped scene that shows the effect; empty if there is none.
+        Name of a shipped scene that shows the effect; empty if there is none.
     numbers : tuple of Number
-        Numbers of the scene. A page without them works an exercise instead.
+        Numbers of the scene. A page without numbers shows a solved exercise instead.
     worked : str
-        Name of the template of the exercise that the page works.
+        Name of the template of the solved exercise.
     kernel : str
         Name of the kernel that computes the result; empty if there is none.
     topic : str
         Topic of exercises.
     library : tuple of str
-        Titles of the sections that only the library needs, to evaluate motions; a course can leave them out.
+        Titles of sections that only symrot's numeric code needs; a course can leave them out.
 
     Examples
     --------

@@ -38,7 +38,7 @@ def _verdict(claim: str, facts: tuple[str, ...], body: str) -> Verdict:
 
 
 def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
-    """Yield the paragraphs: the wrong formula, the counterexample, the nearest true formula, and the command."""
+    """Yield the paragraphs on a mistake: the wrong formula, a counterexample, a true formula, and the command."""
     verdict = refutation(mistake)
     yield Passage(f"{mistake.words} They write `{mistake.claim}`.")
     facts = _facts(mistake.facts)
@@ -56,7 +56,7 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
 
 
 def _facts(facts: tuple[str, ...]) -> str:
-    """Return a sentence with the hypotheses: equations, then the names of what is positive."""
+    """Return a sentence with the hypotheses of a claim: first the equations, then the names of positive symbols."""
     equations = [f"`{text}`" for text in facts if not text.endswith(" > 0")]
     positive = [f"`{text.removesuffix(' > 0')}`" for text in facts if text.endswith(" > 0")]
     clauses = []

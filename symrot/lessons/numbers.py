@@ -1,4 +1,4 @@
-"""The section "With numbers" of a page: formulas of its steps, with the numbers of a scene."""
+"""The section "With numbers" of a page: formulas of its steps, evaluated with the numbers of a scene."""
 
 import re
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ LONGEST = 300  # letters of LaTeX of a formula that is printed again beside its 
 
 
 def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
-    """Yield the paragraphs of the section: numbers of the scene, or an exercise that is worked."""
+    """Yield the paragraphs of the section "With numbers": numbers of a scene, or a solved exercise."""
     if lesson.numbers:
         yield from _of_scene(page, lesson)
     else:
@@ -34,7 +34,7 @@ def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
 
 
 def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
-    """Return the formula of a number in symbols of the scene, and its value.
+    """Return the formula of a number, in symbols that have a value in the scene, and the value of the number.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
 
 @cache
 def _floats(scene: str) -> dict[Expr, Expr]:
-    """Return the numbers of a scene, rounded to :data:`PRECISION` digits."""
+    """Return the values of symbols in a scene, rounded to :data:`PRECISION` digits."""
     return {symbol: value.evalf(PRECISION) for symbol, value in scene_values(load_scene(scene)).items()}
 
 
@@ -94,7 +94,7 @@ def _of_scene(page: Page, lesson: Lesson) -> Iterator[Passage]:
 
 
 def _bare(latex: str) -> str:
-    """Return LaTeX without braces and blanks, to compare two ways to write one formula."""
+    """Return LaTeX without braces and blanks, so that two spellings of the same formula compare as equal."""
     return re.sub(r"[{} ]|\\,", "", latex)
 
 
@@ -109,7 +109,7 @@ def _quantity(value: Expr, unit: str) -> str:
 
 
 def _of_exercise(lesson: Lesson) -> Iterator[Passage]:
-    """Yield an exercise with its solution, each line of which was proven when it was made."""
+    """Yield the paragraphs of an exercise with its solution; every line of the solution is proven."""
     problem = exercise(lesson.worked)[0]
     quantities = ", ".join(f"${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in problem.data)
     asked = " ".join(question.prompt for question in problem.questions if question.kind == "number")

@@ -1,4 +1,4 @@
-"""The page of a derivation as a lesson: what comes before its steps and after them."""
+"""The page of a derivation as a lesson: the paragraphs before its steps and after them."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -15,7 +15,7 @@ __all__ = ["taught"]
 
 
 def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
-    """Return a page with its lesson: question, figures and prerequisites before it; numbers, mistake and links after.
+    """Return a page with its lesson: question, figures, prerequisites in front; numbers, mistake, links at the end.
 
     Examples
     --------
@@ -64,9 +64,9 @@ def _steps_of(page: Page, sections: Sequence[str]) -> int:
 def _for_the_library(sections: Sequence[str]) -> str:
     titles = [f'"{section}"' for section in sections]
     if len(titles) == 1:
-        return f"A course can leave out the section {titles[0]}: only the library needs it, to evaluate motions."
+        return f"A course can leave out the section {titles[0]}: only symrot's numeric code needs it."
     listed = f"{', '.join(titles[:-1])} and {titles[-1]}"
-    return f"A course can leave out the sections {listed}: only the library needs them, to evaluate motions."
+    return f"A course can leave out the sections {listed}: only symrot's numeric code needs them."
 
 
 def _link(name: str) -> str:

@@ -1,4 +1,4 @@
-"""The numbers of a scene under the symbols of derivations."""
+"""Values from a scene for the symbols that derivations use."""
 
 from fractions import Fraction
 from itertools import chain
@@ -69,7 +69,7 @@ def _exact(value: Fraction) -> Rational:
 
 
 def _of_torque(torque: Torque) -> dict[Expr, Expr]:
-    """Return the constants of a torque under the symbols of derivations."""
+    """Return a map from symbols of derivations to the constants of a torque."""
     vectors = {
         ("constant_body", "torque"): symbols.torque_b,
         ("rotor", "angular_momentum"): symbols.rotor,

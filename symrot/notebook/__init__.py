@@ -1,1 +1,1 @@
-"""The pictures, tables and formulas by which a notebook shows the values of symrot."""
+"""Pictures, tables and formulas as which a notebook displays symrot's objects: trajectories, verdicts, .."""

@@ -1,4 +1,4 @@
-"""Derivations, solids, singularities and kernels as Markdown, whose formulas a notebook typesets."""
+"""Markdown for derivations, solids, singularities and kernels; a notebook typesets the formulas in it."""
 
 from symrot.inertia.solids import Solid
 from symrot.kinematics.dossier import SingularityDossier
@@ -18,7 +18,7 @@ LANGUAGES = {"#include": "c", "import": "python", "export": "javascript"}
 
 
 def derivation(page: Page) -> str:
-    """Return the page of a derivation with its figures."""
+    """Return the page of a derivation, with its figures, as Markdown."""
     whole = illustrated(page) if isinstance(page, Derivation) else page
     text = inline(markdown(whole))
     for item in (*whole.opening, *whole.items):
@@ -28,12 +28,12 @@ def derivation(page: Page) -> str:
 
 
 def step(one: Step) -> str:
-    """Return a step of a derivation: its claim, its equation and its reason."""
+    """Return one step of a derivation (its claim, equation and reason) as Markdown."""
     return f"{one.claim}\n\n$$\n{displayed(one)}\n$$\n\n{' '.join(remarks(one))}"
 
 
 def solid(body: Solid) -> str:
-    """Return the mass, the centre of mass and the inertia tensor of a solid."""
+    """Return the mass, the centre of mass and the inertia tensor of a solid as Markdown with formulas."""
     lengths = ", ".join(f"{name.replace('_', ' ')} ${formula(value)}$" for name, value in _lengths(body))
     title = f"**{body.name.replace('_', ' ')}**" + (f", {lengths}" if lengths else "")
     parts = [title, equation("m", body.mass)] if not body.mass.is_Symbol else [title]
@@ -47,7 +47,7 @@ def _lengths(body: Solid) -> list[tuple[str, object]]:
 
 
 def dossier(singularities: SingularityDossier) -> str:
-    """Return the rate matrix of an Euler sequence, its determinant, and what is lost at each gimbal lock."""
+    """Return Markdown about an Euler sequence: its rate matrix, the determinant, and the axis lost at gimbal lock."""
     parts = [
         f"**Singularities of {singularities.sequence}**",
         equation(r"\omega_b = B\,\dot q, \quad B", singularities.jacobian_b),
@@ -64,6 +64,6 @@ def dossier(singularities: SingularityDossier) -> str:
 
 
 def kernel(emitted: Emitted) -> str:
-    """Return the text of a kernel as a block of code."""
+    """Return the text of an emitted kernel as a Markdown block of code."""
     language = next((name for word, name in LANGUAGES.items() if f"\n{word} " in emitted.source), "")
     return f"```{language}\n{emitted.source}```"

@@ -19,14 +19,14 @@ def heading(title: str, remark: str = "") -> str:
 
 
 def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
-    """Return rows of text as an HTML table; only cells of the class :class:`Markup` are HTML already."""
+    """Return an HTML table with the given rows; cells are escaped, except cells of the class :class:`Markup`."""
     lines = [_row(head, "th")] if head else []
     lines += [_row(row, "td") for row in rows]
     return f"<table style='border-collapse:collapse;margin:0.2em 0'>{''.join(lines)}</table>"
 
 
 class Markup(str):
-    """Text that is HTML already, and is not escaped."""
+    """Text that is HTML already, so that :func:`table` must not escape it."""
 
 
 def _row(cells: Sequence[str], kind: str) -> str:
@@ -35,16 +35,16 @@ def _row(cells: Sequence[str], kind: str) -> str:
 
 
 def disclosure(title: str, text: str) -> str:
-    """Return a text of several lines that the reader opens by a click, as HTML."""
+    """Return HTML that shows a title; a click on the title opens a text of several lines."""
     return f"<details><summary>{escape(title)}</summary><pre>{escape(text)}</pre></details>"
 
 
 def equation(left: str, right: Any) -> str:
-    """Return a display formula in Markdown: a name in LaTeX and the value of SymPy that it has."""
+    """Return the formula ``left = right`` for Markdown; ``left`` is LaTeX, ``right`` a SymPy expression."""
     return f"$$\n{left} = {formula(right)}\n$$"
 
 
 def drawing(title: str, svg: str) -> str:
-    """Return an SVG drawing as a picture in Markdown that needs no file."""
+    """Return Markdown for a picture that contains the whole SVG drawing, so that no file is needed."""
     encoded = b64encode(svg.encode("utf-8")).decode("ascii")
     return f"![{title}](data:image/svg+xml;base64,{encoded})"

@@ -17,7 +17,7 @@ PARTS_OF_SAMPLE = (5, 50, 95)
 
 
 def scene(one: Scene) -> str:
-    """Return the body, the start, the torques and the span of a scene, and the text of its file."""
+    """Return the initial state, body, torques and time span of a scene, and the text of its file, as HTML."""
     moments = ", ".join(map(number_text, one.body.principal.moments))
     rows = [
         ("body", f"{one.body.description}, principal moments {moments} kg m²"),
@@ -48,7 +48,7 @@ def _torque(torque: Torque) -> str:
 
 
 def plan(one: Plan) -> str:
-    """Return what is computed for a scene, what is skipped, and by which rule."""
+    """Return an HTML table of a plan: which quantities are computed, which are skipped, and by which rule."""
     report = explain.facts(one)
     rows = [
         (row["item"], "skipped" if row["skipped"] else "kept", row["why"], row["derivation"])
@@ -61,12 +61,12 @@ def plan(one: Plan) -> str:
 
 
 def propagator(one: Propagator) -> str:
-    """Return the scene of a propagator and the method that follows its motion."""
+    """Return an HTML table with the scene of a propagator and the method that computes its motion."""
     return heading(f"Propagator: {one.method}", one.reason) + scene(one.scene)
 
 
 def ensemble(one: Ensemble) -> str:
-    """Return the number of motions of an ensemble, and percentiles of the angular velocity at the last time."""
+    """Return an HTML table: the number of motions, and percentiles of the angular velocity at the last time."""
     import numpy as np
 
     last = one.omega[:, -1, :]

@@ -1,4 +1,4 @@
-"""The function that a notebook calls for every value of symrot that it shows."""
+"""The function that returns the HTML or Markdown with which a notebook displays an object of symrot."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module

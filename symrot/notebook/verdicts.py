@@ -12,7 +12,7 @@ OTHER_COLOUR = "#9a6700"
 
 
 def verdict(one: Verdict) -> str:
-    """Return a verdict in its colour, with everything it says; repairs have their changed pieces marked."""
+    """Return a verdict and all its details as an HTML table; in each suggested repair the changed text is marked."""
     repairs = iter(one.repairs)
     rows: list[tuple[str, str]] = []
     for name, text in one.facts():
@@ -28,6 +28,6 @@ def verdict(one: Verdict) -> str:
 
 
 def identification(one: Identification) -> str:
-    """Return the name of a formula, and where symrot derives it."""
+    """Return an HTML table with the name of a recognised formula, and the derivation that proves it."""
     rows = [("formula", str(one)), ("derived in", one.source)]
     return table(rows)

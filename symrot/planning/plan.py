@@ -76,18 +76,18 @@ class Plan:
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """The constants among :attr:`constants` that do not depend on the initial state."""
+        """The constants of body and torques, which do not depend on the initial state, with their values, by name."""
         return constants_of(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The constants among :attr:`constants` that are numbers of the initial state."""
+        """The constants that belong to the initial state, such as a constant omega_3, with their values, by name."""
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """The constants that are numbers of the initial state, as (name, index of the field, index in the field)."""
+        """For each constant of the initial state: (name, 0 for omega or 1 for the quaternion, index of component)."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -97,7 +97,7 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The calls of functions with jumps or kinks in the torques, such as ``"sign(omega_3)"``, as in the scene.
+        """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``.
 
         The list is empty if the plan was made without modes, see :func:`make_plan`.
         """
@@ -140,7 +140,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes, by name, that stay the same if only the initial state of the plan changes."""
+        """The attributes, by name, that do not depend on the initial state; :meth:`from_start` copies them."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes
@@ -196,7 +196,7 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key; two initial states have equal keys if their plans differ only in numbers.
+    """Return a key of an initial state; if two states of a scene have equal keys, their plans differ only in numbers.
 
     The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
     components of the quaternion are 0, 1 or -1, and which body components of torques fixed in space are zero.

@@ -73,7 +73,7 @@ class RuleOutcome(NamedTuple):
 
 
 def pattern(value: Fraction, unit: bool) -> Pattern:
-    """Return whether a number is zero, free or, if ``unit`` is true, one or minus one."""
+    """Return the pattern of a number: zero, one or minus one (only if ``unit`` is true), otherwise free."""
     top, bottom = value.as_integer_ratio()
     if not top:
         return ZERO
@@ -127,7 +127,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
                 special[mark].append(component)
         torques.append(torque._replace(fields=tuple(fields)))
     if not structure.torques:
-        return RuleOutcome(structure, True, "no torque acts: Euler's equations are free", "euler_equations")
+        return RuleOutcome(structure, True, "no torque acts", "euler_equations")
     del special[FREE]
     reasons = [f"{', '.join(names)} = {mark.value}" for mark, names in special.items() if names] + silent
     why = "; ".join(reasons) or "no component of a torque is exactly zero"
@@ -135,7 +135,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list of one sentence, which names the axes about which the formulas give no torque, or an empty list."""
+    """Return one sentence, in a list, that names the axes about which a torque's formulas are zero; or no sentence."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
@@ -225,7 +225,7 @@ def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether a computation in doubles proves that no body component of a vector is zero.
+    """Return whether a computation in doubles proves that no body component of a vector is zero at the start.
 
     It takes a tenth of the time of exact arithmetic.
     """
@@ -282,7 +282,7 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
         if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure.torques):
             why = f"equal moments about the other axes and no torque about axis {axis + 1}"
             if scene.initial.omega_b[axis] == 0 and not structure.torques:
-                why += ", and no spin: the body rotates steadily about an axis across"
+                why += ", and no spin: the body rotates steadily about an axis perpendicular to it"
                 return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "symmetric_spin")
             return RuleOutcome(replace(structure, constant=_constant(scene, axis)), True, why, "symmetric_spin")
     return RuleOutcome(structure, False, "no symmetry axis about which no torque acts")
@@ -300,7 +300,7 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque has no component along the symmetry axis of the body in any motion."""
+    """Return whether a torque never has a component along the body's symmetry axis, which has the index ``axis``."""
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
     if torque.kind == "constant_body":

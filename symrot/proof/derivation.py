@@ -119,7 +119,7 @@ class Derivation(PrintedPage):
             A map from the LaTeX of a name to its meaning: Expr, Matrix, or a function that takes the arguments in
             parentheses after the name.
         rates : mapping, optional
-            A map from a variable to its rate, which is the meaning of dots and time derivatives.
+            A map from a variable to its rate, for which a dot above the variable and ``d/dt`` stand.
         """
         self.names |= {key(name): meaning for name, meaning in names.items()}
         self.rates |= rates or {}
@@ -210,7 +210,9 @@ class Derivation(PrintedPage):
         )
         for _, text in board:
             if not self._is_read_back(claim, text, left, sides, relations):
-                raise ProofError(f"{self.name}, {claim!r}: expected LaTeX on the board that can be read, got {text}")
+                raise ProofError(
+                    f"{self.name}, {claim!r}: expected LaTeX that can be parsed in the proof on the board, got {text}"
+                )
         return self._add(
             Step(
                 claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed,
@@ -267,7 +269,10 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of the LaTeX displayed for a side of an equation: several for a chain ``X = Y``."""
+        """Return the value of the LaTeX displayed for a side of an equation, in a list.
+
+        If the LaTeX is a chain ``X = Y``, the list contains the value of each of its sides.
+        """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -334,7 +339,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of a polynomial that has several; otherwise return the expression alone, in a list."""
+    """Return a list of the factors of a polynomial; it contains only the expression itself if that has no factors."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -345,9 +350,9 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return a displayed value in the shape of ``side``, the side of the equation for which it is displayed.
+    """Return the value of a displayed form in the shape of ``side``, the side of an equation that it replaces.
 
-    If the side is a square matrix, a number becomes that multiple of the identity matrix.
+    If the side is a square matrix, a number becomes that multiple of the identity matrix, such as 1 the identity.
     """
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):

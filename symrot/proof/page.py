@@ -106,13 +106,13 @@ class Figure:
     name : str
         The name of its file, without ``.svg``.
     title : str
-        What it shows, in a few words without formulas.
+        A few words without formulas, which say what the figure shows.
     caption : str
         Sentences below the figure; formulas are LaTeX between ``$``.
     draw : callable
         Returns the drawing.
     section : str
-        The title of the section that it opens; empty for the top of the page.
+        The title of the section that begins with this figure; empty for a figure at the top of the page.
     """
 
     name: str
@@ -123,12 +123,12 @@ class Figure:
 
     @property
     def file(self) -> str:
-        """The place of its file, relative to the page."""
+        """The path of the figure's file, relative to the page."""
         return f"figures/{self.name}.svg"
 
     @property
     def description(self) -> str:
-        """The caption as plain words, for readers of screens."""
+        """The caption as plain words without formulas, for screen readers."""
         return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
 
     def svg(self) -> str:
@@ -159,9 +159,9 @@ class Page:
     first : int
         The number of the first step; not 1 on a page with a part of a derivation.
     opening : list
-        What stands above the paragraph about the subject: paragraphs and figures.
+        Paragraphs and figures above the paragraph about the subject.
     closing : list
-        What stands below the steps and the units: headings and paragraphs.
+        Headings and paragraphs below the steps and the units.
     beyond : int
         How many of the steps a course can leave out, because only the library needs them.
     file : str

@@ -21,12 +21,15 @@ __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
 def one_double(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to the ratio top/bottom, in a tuple of length 1."""
+    """Return the double nearest to the ratio top/bottom, in a tuple of length 1, as :class:`Binding` expects it."""
     return (top / bottom,)
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return two doubles whose sum approximates the ratio top/bottom: the nearest double, and the rounded remainder."""
+    """Return two doubles whose sum approximates the ratio top/bottom to 31 digits, as :class:`Binding` expects them.
+
+    They are the double nearest to the ratio, and the rounded remainder.
+    """
     return quotient(top, bottom)
 
 
@@ -71,7 +74,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameters for a plan with another initial state, each computed exactly and rounded once."""
+        """Return the parameter values for a plan, which may have another initial state than the first plan.
+
+        Each value is computed exactly and rounded once.
+        """
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
@@ -81,7 +87,7 @@ class Binding:
 
 
 class _Moving:
-    """A formula that depends on the initial state, evaluated exactly.
+    """A formula that is evaluated exactly for each initial state, since it contains numbers of the initial state.
 
     A monomial in one name, such as ``3*omega_1**2``, is evaluated with integers, which is faster than with Fractions.
     """
@@ -130,7 +136,7 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return the formula in which each part made of numbers and ``known`` constants only is replaced by its value."""
+    """Replace each subexpression of a formula that contains only numbers and ``known`` constants by its value."""
     if names(node) <= known.keys():
         return ("number", value_of(node, known))
     if node[0] == "call":

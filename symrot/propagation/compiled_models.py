@@ -53,7 +53,7 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return a text of names, sizes and times of the files that derive kernels; it changes whenever a file changes."""
+    """Return the names, sizes and times of all files that derive kernels, as text: it identifies a version of them."""
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list
@@ -67,7 +67,7 @@ def _version() -> str:
 
 
 def kernel_key(plan: Plan) -> str:
-    """Return the key of a plan's kernel in the cache."""
+    """Return the key under which the cache stores the kernel of a plan."""
     return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
 
 
@@ -153,10 +153,10 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the edges and scales of the blocks of states, omega and attitude, whose errors are measured separately.
+    """Return how the states of a plan are divided into blocks (omega and attitude) with separate errors.
 
-    Block k consists of the states from edge k up to edge k + 1. Its error is relative to its scale; if the scale is 0,
-    the error is relative to the norm of the block.
+    The first result lists edges: block k consists of the states from edge k up to edge k + 1. The second lists the
+    scales to which the errors are relative; 0 means the norm of the block itself.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -181,9 +181,9 @@ def has_formulas(plan: Plan) -> bool:
 
 
 def grows_late(plan: Plan) -> bool:
-    """Return whether a torque given by formulas may make a motion from rest grow as a power of time of 3 or more.
+    """Return whether a torque's formulas may make a motion from rest grow as the third or a higher power of time.
 
-    The first Taylor coefficients of such a motion are zero and do not show how large the motion becomes. An ensemble
+    The first Taylor coefficients of this motion are zero, so that they do not show how large it becomes. An ensemble
     therefore checks its steps one motion at a time.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
@@ -203,7 +203,7 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the parameters of the rates to bounds that limit the steps of SciPy's methods.
+    """Return a function that takes the parameters of the rates and returns bounds, by which SciPy's steps are limited.
 
     The bounds say how far the torque formulas can deviate from their values at the start of a step. Return None if no
     formula can have a pulse that a step misses, or if the rates have no Taylor series.

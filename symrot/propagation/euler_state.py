@@ -94,7 +94,7 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Part of a motion in which one Euler sequence is used: its first and last time, s, and a function of time.
+    """Part of a motion in which the states are angles of one Euler sequence: first and last time, s, and a function.
 
     The function takes times, s, and returns omega and quaternion, shape (n, 7).
     """
@@ -183,7 +183,10 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the parts of the motion up to ``end`` that use one Euler sequence each, and add up their cost."""
+        """Compute the motion up to ``end``, s, and yield its parts, each of which uses one Euler sequence.
+
+        The costs of the parts are added up.
+        """
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -201,7 +204,10 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield (first time, last time, recorded steps) of groups of steps, to ``end`` or a change of the sequence."""
+        """Yield groups of steps as (first time, last time, recorded steps) until ``end`` or near gimbal lock.
+
+        Near gimbal lock, the caller continues with another Euler sequence.
+        """
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:
@@ -258,7 +264,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times in a span, s, to omega and quaternion, shape (n, 7)."""
+        """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:
@@ -301,7 +307,10 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; raise InputError for events."""
+        """Return the motion at the times t, as a call of :class:`symrot.propagation.propagator.Propagator` does.
+
+        Events are not supported: they raise InputError.
+        """
         if events is not None:
             raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")
         return super().__call__(t, **state)

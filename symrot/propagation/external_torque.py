@@ -80,7 +80,7 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return the torque as a C function; for a table, this is a function of the ``library`` of the motion."""
+        """Return a pointer to the torque as a C function; for a table, the function is part of ``library``."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
@@ -101,7 +101,7 @@ class _Function(TorqueSource):
         self.pointer = CALLBACK(self._call)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return class and function; raise PicklingError in one sentence if pickle cannot save the function."""
+        """Return what pickle needs to copy the torque; raise PicklingError if pickle cannot save the function."""
         if "cloudpickle" not in sys.modules:  # joblib and Dask load it; it saves functions that pickle refuses
             try:
                 pickle.dumps(self.function)
@@ -139,7 +139,7 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Delete the exception stored during the previous motion. All times are accepted."""
+        """Delete the exception that the function raised in the previous motion; a function is defined at all times."""
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -172,7 +172,7 @@ class _CFunction(TorqueSource):
         """Accept every time: the domain of a C function is not known."""
 
     def failure(self) -> BaseException | None:
-        """Return None: a C function raises no exceptions; it reports an error by its return value."""
+        """Return None: a C function raises no exceptions, but reports an error by its return value."""
         return None
 
 
@@ -239,7 +239,9 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
     edges, coefficients, knots = [], [], [float(t[-1])]
     for low, high in pairwise(cuts):
         if high - low < 2:
-            raise InputError(f"torque: expected two samples or more between switching times, got one at {t[low]} s")
+            raise InputError(
+                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
+            )
         spline = CubicSpline(t[low:high], values[low:high])
         _check_overshoot(spline, float(np.abs(values).max()))
         edges.append(spline.x[:-1])
@@ -272,7 +274,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return the TorqueSource for a torque in one of the forms that :func:`symrot.propagator` accepts."""
+    """Wrap a torque, in any form that :func:`symrot.propagator` accepts, in an object with a common interface."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -370,9 +372,9 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
-        """Return the motion from another initial state, for which the equations have the same form.
+        """Return the motion from another initial state; nothing is derived or compiled again.
 
-        Nothing is derived or compiled again.
+        The equations of motion must have the same form as for the first initial state.
         """
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
@@ -386,7 +388,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of ``run()``; if the torque function raised an exception during it, raise that."""
+        """Check the times, then return the result of ``run()``; an exception of the torque function is raised again."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -403,7 +405,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 

@@ -58,7 +58,10 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan for a motion in closed form: no state is eliminated, since nothing has to be integrated."""
+    """Return the plan without the simplifications that eliminate states, for a motion in closed form.
+
+    A closed form gives all states at no cost, since nothing has to be integrated.
+    """
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -93,7 +96,7 @@ class Setup:
     epoch : float
         Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
-        Whether the stepper may count time from another origin than the scene does.
+        Whether the stepper may count time from another instant than t = 0 of the scene.
     warnings : tuple of str
         Sentences that say which accuracy cannot be guaranteed.
     """
@@ -119,17 +122,17 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the kernel counts time from an origin that moves with the steps, so that phases keep their digits."""
+        """Whether the kernel counts time from an instant that moves during the motion, so that phases keep digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """Function from a plan with any initial state to the parameters of the rates, one double per parameter."""
+        """Function that returns the parameters of the rates for a plan with any initial state: one double each."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function that returns the parameters of the output quantities for a plan: two doubles per parameter."""
+        """Function that returns the parameters of the output quantities for a plan, two doubles for each parameter."""
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
@@ -139,11 +142,14 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function from parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed."""
+        """Function that takes parameters of the rates and returns bounds that limit SciPy's steps; None without limit.
+
+        The bounds ensure that no step passes over a short pulse of a torque.
+        """
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return plan and kernel in which time is counted from an epoch, a parameter that can change between steps."""
+        """Return a plan and its kernel that count time from an epoch, a parameter that can change between steps."""
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
@@ -156,14 +162,14 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """The data that all motions of one plan integrated in C share: the setup, and the library of kernel and stepper."""
+    """The data shared by all motions of one plan that are integrated in C; adds the library of kernel and stepper."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan; its arguments are checked."""
+        """The integration from the initial state of the setup's plan, with checked arguments; other motions copy it."""
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -173,7 +179,7 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy of the setup whose clock shows 0 at the start."""
+        """A copy of the setup whose clock shows 0 at the start, so that times near the start keep all digits."""
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
@@ -188,14 +194,14 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """The data that all motions of one plan in closed form share: the setup and the kind of closed form."""
+    """The data shared by all motions of one plan that have a closed form; adds the kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
 
     @cached_property
     def starts(self) -> Starts:
-        """Function from initial states to motions in closed form, for the body and the torques of the plan."""
+        """Function that takes an initial state and returns the motion in closed form, for this body and its torques."""
         return self.form.starts(self.setup.plan.scene)
 
 
@@ -203,7 +209,7 @@ class ClosedFormSetup:
 
 
 class Motion(ABC):
-    """A plan with its kernel, its numbers and one initial state; its clock shows 0 at the scene time ``epoch``.
+    """The motion of a scene from one initial state; its clock shows 0 at the scene time ``epoch``.
 
     ``has_external_torque`` says whether a torque without a formula acts on the body.
     """
@@ -294,7 +300,7 @@ class Motion(ABC):
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
@@ -302,7 +308,7 @@ class Motion(ABC):
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def path(self, times: Floats) -> Callable[[Floats], Floats]:
-        """Return a function from times of the scene, s, to states, shape (n, N).
+        """Return a function that takes n times of the scene, s, and returns the states, shape (n, N).
 
         It is defined on the shortest interval that contains the start and all ``times``.
         """
@@ -320,7 +326,7 @@ class Motion(ABC):
         return lambda t: states(t - zero if zero else t)
 
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return a function from times, s, to omega, and to the quaternion if ``with_attitude``; shape (3 or 7, n).
+        """Return a function that takes n times, s, and returns omega, shape (3, n), or with the quaternion, (7, n).
 
         ``path`` is a result of :meth:`path`.
         """
@@ -344,11 +350,11 @@ class RestartableMotion(Motion):
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
 
 
 class SteppedInC(ABC):
-    """Interface of motions that are integrated by a stepper in C."""
+    """Interface of motions that a stepper in C integrates; the property ``stepping`` is the integration."""
 
     @property
     @abstractmethod
@@ -362,11 +368,11 @@ class ShiftableMotion(RestartableMotion):
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times since the epoch, shape (n, N), and the number of steps and evaluations."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at times of the scene, shape (n, N), and the cost of the motion.
@@ -382,14 +388,14 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether these times lose fewer digits on a clock that shows 0 at the start."""
+        """Return whether these times of the scene keep more digits on a clock that shows 0 at the start."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that loses the fewest digits of the times: its own, or one from its start."""
+    """Return the motion with the clock on which these times keep the most digits: its own, or one that starts at 0."""
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
@@ -398,7 +404,7 @@ class ConstantMotion(RestartableMotion):
     """A motion in which every state is constant, so that the plan leaves no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return ConstantMotion(self.setup, self.setup.plan.from_start(initial))
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
@@ -419,17 +425,17 @@ class ClosedFormMotion(RestartableMotion):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ClosedFormMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return ClosedFormMotion(self._shared, self.setup.plan.from_start(initial))
 
     @property
     def form(self) -> ClosedForm:
-        """The kind of closed form, for example of a free body or a heavy top."""
+        """The kind of closed form from the table of closed forms, such as the free body or the heavy top."""
         return self._shared.form
 
     @cached_property
     def exact(self) -> Exact:
-        """The motion in closed form, from this initial state."""
+        """The closed form of the motion from this initial state, which can be evaluated at any time."""
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
@@ -455,7 +461,7 @@ class ClosedFormMotion(RestartableMotion):
         return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, and returns the states, shape (n, N); ``span`` is not used."""
         return lambda t: self.integrate(t)[0]
 
 
@@ -468,7 +474,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "SteppedMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return SteppedMotion(self._shared, self.setup.plan.from_start(initial))
 
     @property
@@ -478,7 +484,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
@@ -513,7 +519,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
@@ -524,12 +530,12 @@ class SciPyMotion(ShiftableMotion):
     """A motion integrated by one of SciPy's methods."""
 
     def from_start(self, initial: Initial) -> "SciPyMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return SciPyMotion(self.setup, self.setup.plan.from_start(initial))
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The motion on a clock that shows 0 at the start."""
+        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
@@ -549,7 +555,7 @@ class SciPyMotion(ShiftableMotion):
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return the options for SciPy's steps and error control, for given parameters of the rates."""
+        """Return SciPy's method and its limits for this motion, for given parameters of the rates."""
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)
@@ -565,7 +571,7 @@ class SciPyMotion(ShiftableMotion):
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)

@@ -16,7 +16,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 def report(t: float, start: float, stop: float) -> None:
     """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; do nothing if no reporter is set.
 
-    Inside :func:`within`, the times are reported on the clock and span of the whole motion.
+    If the motion is a part of another motion (see :func:`within`), the progress of the whole motion is reported.
     """
     reporter = _reporter.get()
     if reporter is not None:
@@ -29,7 +29,7 @@ def report(t: float, start: float, stop: float) -> None:
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Context manager: report each motion inside the block as a part of one whole motion from ``start`` to ``stop``, s.
+    """Context manager: progress inside the block is reported as progress of one motion from ``start`` to ``stop``, s.
 
     ``zero`` returns the time in the whole motion at which the clock of the part shows 0.
     """

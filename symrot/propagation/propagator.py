@@ -68,7 +68,7 @@ class Propagator:
         return symrot.in_notebook(self)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the scene and the options: a copy prepares its motion from them and from the cache, on first use."""
+        """Return the scene and the options for pickle; a copy prepares its motion from them when it is first used."""
         return {name: value for name, value in self.__dict__.items() if name not in _PREPARED}
 
     @cached_property
@@ -77,7 +77,7 @@ class Propagator:
 
     @cached_property
     def _by_structure(self) -> dict[Hashable, Motion]:
-        """The first motion of each structure of initial states."""
+        """The first motion for each structure of initial states, from which later motions copy what does not change."""
         return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:
@@ -124,7 +124,7 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Prepare the first call: derive the kernel, and meanwhile compile the closed form if the motion has one."""
+        """Prepare the first call: derive the kernel and, at the same time, compile the closed form if there is one."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
@@ -256,12 +256,12 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; raise InputError for a subnormal double, as for numbers of a scene."""
+    """Return the exact value of a finite double as a Fraction; raise InputError if it is subnormal (too small)."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return the fraction top/bottom of two coprime integers, without the search for a common divisor in Fraction()."""
+    """Return the Fraction top/bottom of two coprime integers, faster than Fraction(), which divides by their gcd."""
     fraction: Any = object.__new__(Fraction)
     fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
     return fraction  # type: ignore[no-any-return]

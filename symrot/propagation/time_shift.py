@@ -36,9 +36,9 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether a motion over times from ``low`` to ``high``, s, should use a clock that shows 0 at its start.
+    """Return whether a motion over the times from ``low`` to ``high``, s, should use a clock that shows 0 at its start.
 
-    It should if all times lie between half the start and twice the start, where differences from the start are exact.
+    It should if all times lie between half and twice the start, since differences from the start are exact there.
     """
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
@@ -63,9 +63,9 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Values of formulas as functions of the epoch, the time of the scene at which a clock shows 0.
+    """Function from the epoch, the scene time at which a clock shows 0, to the values of formulas that contain it.
 
-    The parts that do not depend on the epoch are computed once.
+    Subexpressions that do not contain the epoch are computed once.
 
     Parameters
     ----------
@@ -85,7 +85,10 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values for an epoch, s, on the clock of the motion, each computed exactly and rounded once."""
+        """Return the values of all formulas for an epoch, s, each computed exactly and rounded once.
+
+        The epoch is given on the clock of the motion.
+        """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -100,7 +103,7 @@ class ShiftedParameters:
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
-    """Return integers a, b, c if a formula equals (a + b*epoch)/c, otherwise None."""
+    """Return integers a, b, c if a formula equals (a + b*epoch)/c, which is fast to evaluate; None otherwise."""
     values = _coefficients(node)
     if values is None:
         return None
@@ -110,7 +113,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return the numbers a and b if a formula equals a + b*epoch, otherwise None."""
+    """Return the numbers a and b of a formula that equals a + b*epoch, or None for any other formula."""
     if node[0] == "number":
         return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):
@@ -143,9 +146,7 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function that takes an epoch, in s, and returns the rates and their parameters.
-
-    Time in these rates is counted from the epoch.
+    """Return a function that takes an epoch, s, and returns rates that count time from it, with their parameters.
 
     ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
     ``start`` are arguments of :class:`ShiftedParameters`. ``make`` converts plan and kernel to the rates: to the
@@ -161,7 +162,7 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return the formula in which each part that does not contain the epoch is replaced by its value."""
+    """Replace each subexpression of a formula that does not contain the epoch by its value."""
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):

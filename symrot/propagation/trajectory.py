@@ -92,8 +92,8 @@ class Trajectory(MotionSamples):
         As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
         PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences that say what cannot be guaranteed: the accuracy under a torque without a formula, or whether an event
-        takes place if its formula comes nearer to zero than the error of the motion.
+        Sentences about what cannot be guaranteed: the accuracy under a torque without a formula, or an event whose
+        formula comes so close to zero that the error of the motion matters.
     t_events, y_events : list of arrays or None
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     events : tuple of Event, or None
@@ -131,7 +131,7 @@ class Trajectory(MotionSamples):
             self.events = events.events
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the samples and the propagator; a copy prepares the motion again if it needs more than the samples."""
+        """Return the samples and the propagator for pickle; a copy prepares the motion again only if it needs more."""
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
         return {name: value for name, value in self.__dict__.items() if name not in _RECOMPUTED}
@@ -165,7 +165,7 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def _states(self) -> Floats:
-        """The integrated states, shape (n, N); the two arrays of a closed form are concatenated on first use."""
+        """The states, one row per sample, shape (n, N), joined on first use from the two arrays of a closed form."""
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
@@ -182,7 +182,7 @@ class Trajectory(MotionSamples):
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude was computed; the plan leaves it out if neither a torque nor the output needs it."""
+        """Whether the attitude was computed; a plan omits it if neither a torque nor the output needs it."""
         return self.plan.structure.attitude
 
     def _need_attitude(self) -> None:
@@ -286,7 +286,7 @@ class Trajectory(MotionSamples):
         if isinstance(times, bool) or not isinstance(times, int | np.integer):
             return self.at(times)
         if times < 2 or not len(self):
-            raise InputError(f"times: expected 2 samples or more of a motion that has samples, got {times}")
+            raise InputError(f"times: expected 2 samples or more, of a trajectory that has samples itself, got {times}")
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
     @cached_property

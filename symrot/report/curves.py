@@ -1,4 +1,4 @@
-"""Curves over time in one panel: a filled band where they are too fast to be seen, dashes where one hides another."""
+"""Drawing of curves over time in one panel: fast oscillations become a filled band, overlapping curves are dashed."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -26,13 +26,13 @@ BAND_NOTE = "filled: least to greatest"
 
 
 def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the width and height of axes of matplotlib in columns, of which an inch has 150."""
+    """Return the width and height of matplotlib axes in columns: the unit of 1/150 inch, about one pixel."""
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
 
 
 def _turns(values: Floats) -> int:
-    """Return how often a curve changes between rising and falling."""
+    """Return the number of turning points of a curve, at which it changes between rising and falling."""
     slopes = np.sign(np.diff(values))
     slopes = slopes[slopes != 0]
     return int(np.count_nonzero(np.diff(slopes)))
@@ -58,7 +58,7 @@ def is_too_fast(t: Floats, values: Floats, columns: float, visible: float) -> bo
 
 
 def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats, Floats]:
-    """Return a band that contains every sample of a fast curve.
+    """Return the band, lower and upper bound, that is drawn instead of a curve that oscillates too fast for a line.
 
     Parameters
     ----------
@@ -70,7 +70,8 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
     Returns
     -------
     tuple of 3 arrays, shape (m,)
-        Times, and the lower and the upper bound there; both bounds are straight between the times.
+        Times, and the lower and the upper bound there; between the times both bounds are straight lines. No sample lies
+        outside the band.
     """
     periods = max(0.5 * _turns(values), 1.0)
     count = int(max(1, min(columns, periods / PERIODS_IN_BIN, len(t) // 2)))
@@ -87,7 +88,7 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
 
 
 def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: float) -> list[Mask]:
-    """Return for each curve where it would hide an earlier one.
+    """Return, for each curve, the samples at which it would cover a curve drawn before it (True); it is dashed there.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: fl
 
 
 def _long_runs(mask: Mask, fraction: float) -> Mask:
-    """Return the mask without runs of True shorter than a fraction of its length."""
+    """Return a mask in which runs of True that are shorter than a fraction of the mask's length are set to False."""
     steps = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     long = np.zeros(len(mask), dtype=bool)
     for start, stop in steps.reshape(-1, 2):
@@ -119,7 +120,7 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield the visible and the hidden part of a curve, the longer first, each with NaN elsewhere."""
+    """Yield the two parts of a curve, the longer first, as (values with NaN outside the part, whether it is hidden)."""
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]
@@ -165,7 +166,7 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
-    """Return whether a curve is drawn as a band; times out of order have no bins, and their curve stays a line."""
+    """Return whether a curve is drawn as a band instead of a line; times that do not increase always give a line."""
     known = np.isfinite(curve)
     if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
         return False

@@ -1,4 +1,4 @@
-"""The plan of a scene as a table: items computed or skipped, the rule, its derivation, and the operations saved."""
+"""The plan of a scene as a table: what is computed or skipped, by which rule, and how many operations that saves."""
 
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["KERNEL", "explanation", "facts", "lines"]
 
 KERNEL = "deriving the kernel"
-"""The row that says whether the cache has the kernel."""
+"""Name of the row that says whether the cache contains the kernel."""
 
 HEAD = ("item", "", "rule", "derivation", "operations", "saved")
 FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or multiplication
@@ -35,7 +35,10 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return a table row for the general motion and for each rule of a plan: operations after it, operations saved."""
+    """Return the table rows for the general motion and then for each rule of a plan, in the order of application.
+
+    Each row counts the operations that remain after the rule, and the operations that the rule saves.
+    """
     from symrot.planning.general_structure import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
@@ -82,7 +85,7 @@ def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
     if not has_formulas(plan):
         return []
     if method in ("exact", "constant"):
-        return [_row("narrow features", True, "the motion has no steps that could miss one")]
+        return [_row("narrow features", True, "the motion has no steps that could miss a narrow feature")]
     return [_narrow_features(plan), *([_switches(plan.switches)] if plan.switches else [])]
 
 
@@ -95,7 +98,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
     except InputError as reason:  # without a Taylor series there are no bounds inside a step
-        return _row("narrow features", False, f"may be missed by a step: {reason}")
+        return _row("narrow features", False, f"a step may miss them: {reason}")
     if terms is None:
         why = "the formulas are polynomials of low degree, or sines and cosines of time: they have no narrow features"
         return _row("narrow features", True, why)
@@ -119,7 +122,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return the table row about a torque given by samples, in a list of one row; empty if there is no such torque."""
+    """Return a list with the table row about a torque given by samples; empty if the scene has no such torque."""
     table = plan.scene.table
     if table is None:
         return []
@@ -157,7 +160,7 @@ def _counts_text(counts: dict[str, int] | None) -> str:
 
 
 def lines(report: "PlanReport") -> list[str]:
-    """Return lines of text about an explained plan, from the data of :func:`facts`; the first line is the title."""
+    """Return the lines of text that `symrot explain` prints, from the data of :func:`facts`; the title comes first."""
     rows = [HEAD]
     for row in report["rows"]:
         changed = row["saved"] != 0
@@ -174,5 +177,5 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the explained plan as a table of text."""
+    """Return the explanation of a plan as text, as `symrot explain` prints it."""
     return "\n".join(lines(facts(plan)))

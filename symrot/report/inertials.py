@@ -1,4 +1,4 @@
-"""Text and facts of bodies that were read from meshes and robot files."""
+"""Reports on the mass properties of bodies that were read from meshes and robot files, as text and as data."""
 
 from collections.abc import Sequence
 from decimal import Context, Decimal
@@ -14,7 +14,7 @@ __all__ = ["facts", "lines", "link_facts", "link_lines", "table_text"]
 
 
 def facts(inertial: Inertial) -> dict[str, Any]:
-    """Return the mass properties as numbers, by name."""
+    """Return the mass properties of a body as data for JSON: mass, centre of mass, inertia, .."""
     principal = inertial.principal
     return {
         "name": inertial.name,
@@ -33,7 +33,7 @@ def facts(inertial: Inertial) -> dict[str, Any]:
 
 
 def lines(inertial: Inertial) -> list[str]:
-    """Return the lines that describe a body, in the axes of its file."""
+    """Return lines of text with the mass properties of a body, in the axes of its file."""
     table = facts(inertial)
     rows = [
         ("mass", f"{table['mass']:.15g} kg"),
@@ -68,13 +68,13 @@ def _numbers(values: Sequence[float]) -> str:
 
 
 def link_facts(link: Link) -> dict[str, Any]:
-    """Return the facts of a link: its mass properties, or its problem."""
+    """Return data for JSON about a robot's link: its mass properties, or the reason why it has none."""
     body = {} if link.inertial is None else facts(link.inertial)
     return {"name": link.name, "problem": link.problem, **body}
 
 
 def link_lines(links: Sequence[Link]) -> list[str]:
-    """Return one line for each link of a robot."""
+    """Return one line of text for each link of a robot: its mass properties, or the reason why it has none."""
     width = max(len(link.name) for link in links)
     return [f"{link.name:{width}}  {_summary(link)}" for link in links]
 

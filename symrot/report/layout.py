@@ -59,7 +59,10 @@ def emphasis(text: str, stream: TextIO) -> str:
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width of lines in characters: the terminal's width, at most ``most``; ``most`` for a pipe or file."""
+    """Return the width, in characters, of lines to print: that of the terminal, but at most ``most``.
+
+    If the output goes to a pipe or file, the width is ``most``.
+    """
     if not sys.stdout.isatty():
         return most
     from shutil import get_terminal_size  # imported here: slow, and not needed for a pipe

@@ -25,7 +25,7 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
-    """Return the description for the head of a trajectory file: scene, method, meaning of each array, conventions."""
+    """Return the description that a trajectory file begins with: scene, method, conventions, meaning of each array."""
     requested = zip(trajectory.events or (), trajectory.event_kinds or (), trajectory.t_events or (), strict=True)
     scene, stats = trajectory.scene, trajectory.stats
     return {
@@ -101,7 +101,7 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], events: list[Labelled], about
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return the numbers of a quantity as text, one list per component, with enough digits to restore the doubles."""
+    """Return the numbers in a part of the samples as text, one list per component; digits suffice for exact doubles."""
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 
@@ -119,7 +119,7 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
 
     An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``, and
     :func:`symrot.load` reads it. A CSV file contains comment lines, a line of column names, and numbers with all digits
-    (``pandas.read_csv(file, comment="#")``). Events are written too: in an NPZ file with the states at them.
+    (``pandas.read_csv(file, comment="#")``). The times of events are written too, in an NPZ file with the states.
 
     Parameters
     ----------

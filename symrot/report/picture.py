@@ -37,7 +37,7 @@ def literal(text: str) -> str:
 
 
 def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: bool = True) -> None:
-    """Write the figure that a function draws and returns to a file, in symrot's style; see :func:`save_page`."""
+    """Call ``figure`` to draw a matplotlib Figure in symrot's style, and write it to a file; see :func:`save_page`."""
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
@@ -63,7 +63,7 @@ def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure as a PNG with few colours; it uses Pillow, which matplotlib requires anyway."""
+    """Write a figure as a PNG file with a palette of few colours, by Pillow, which matplotlib requires anyway."""
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

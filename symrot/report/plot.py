@@ -45,10 +45,11 @@ def require_matplotlib(option: str = "--plot") -> None:
 
 
 def dense(trajectory: Any) -> Any:
-    """Return a motion at as many times as a picture shows, if it has a dense solution; otherwise its own samples.
+    """Return the motion at as many times as a smooth picture needs; without a dense solution, its own samples.
 
-    The times are evenly spaced. If the motion has more rotations than samples can follow, they are shifted by golden
-    fractions of their distance, so that they do not keep step with the rotation and meet all its phases.
+    The times are evenly spaced. If there are too many rotations for that, each time is shifted by a multiple of the
+    golden ratio modulo 1, in units of the spacing: even spacing could show the rotation at the same phases again and
+    again.
     """
     from symrot.propagation.trajectory import Trajectory
 
@@ -66,7 +67,7 @@ def dense(trajectory: Any) -> Any:
 
 
 def _fastest(trajectory: Any) -> float:
-    """Return an estimate of the fastest rate in a motion, rad/s: of the body, or of its answer to a rotor."""
+    """Return an upper estimate of the fastest rate in a motion, rad/s: rotation plus the nutation due to rotors."""
     moments = [float(moment) for moment in trajectory.scene.body.principal.moments]
     rotor = float(np.linalg.norm(_rotor(trajectory.scene)))
     return float(np.max(np.linalg.norm(trajectory.omega, axis=1))) + rotor / (min(moments) or max(moments))
@@ -95,7 +96,7 @@ def _is_wide(axes: Any) -> bool:
 
 
 def _legend(axes: Any) -> None:
-    """Name the curves above the axes, or in a corner of axes that are too narrow for it."""
+    """Add the legend of the curves above the axes; if the axes are too narrow for that, in a corner."""
     count = len(axes.get_legend_handles_labels()[1])
     if _is_wide(axes):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
@@ -105,7 +106,7 @@ def _legend(axes: Any) -> None:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a nearly constant component that would flatten the others is written as text."""
+    """Draw components over time; a steady component, so large that the others look flat, is written as text."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
@@ -120,7 +121,10 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
 
 
 def _unwrapped(angles: Floats, turn: float) -> Floats:
-    """Return angles with NaN at each jump by more than half a rotation (``turn``), where the curve is interrupted."""
+    """Return angles with NaN after each jump by more than half a rotation, so that their curve has a gap there.
+
+    ``turn`` is a whole rotation in the unit of the angles.
+    """
     gaps = np.zeros_like(angles, dtype=bool)
     gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
     return np.where(gaps, np.nan, angles)
@@ -195,7 +199,10 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw the path of a free body's angular momentum among other possible paths, or any other body's rotation axis."""
+    """Draw on a sphere, in body axes, the path of a free body's angular momentum, or of any other body's rotation axis.
+
+    Thin curves show the paths that the angular momentum would have at other energies.
+    """
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
         axes.set_title("Axis of rotation in the body")
@@ -271,7 +278,7 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
         raise InputError(f"panel: expected one of {', '.join(PANELS)}, got {panel!r}")
     require_matplotlib("plot")
     if not len(trajectory):
-        raise InputError("plot: expected a trajectory with samples, got one without")
+        raise InputError("plot: expected a trajectory with samples, got a trajectory without samples")
     if np.ndim(trajectory.omega) != 2:
         raise InputError("plot: expected one motion, got an ensemble; plot one of its motions, such as ensemble[0]")
     if panel == "vertical" and not has_vertical(trajectory.scene):
@@ -320,7 +327,7 @@ def figure(trajectory: Any, tolerance: float) -> Any:
 
 
 def _left_out(trajectory: Any) -> set[str]:
-    """Return the panels that a motion does not have."""
+    """Return the names of the panels that a figure omits, since the motion has no attitude or the scene no vertical."""
     if not trajectory.has_attitude:
         return {"attitude", "vertical", "space"}
     return set() if has_vertical(trajectory.scene) else {"vertical"}

@@ -169,7 +169,7 @@ class OperationsRecord(TypedDict):
 
 
 class NamedScene(TypedDict):
-    """The scene of a plan, by name."""
+    """The name of the scene to which an explained plan belongs."""
 
     name: str
     title: str

@@ -1,4 +1,4 @@
-"""The figure of the operations and the time that kernels specialised to their scenes save."""
+"""The figure that shows how many operations and how much time kernels save that are specialised to their scenes."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -63,5 +63,5 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Draw the savings by specialised kernels into a file, whose suffix decides the format."""
+    """Write the figure of the savings to a file; the suffix of ``path`` decides the format."""
     draw(lambda: figure(ladder), path)

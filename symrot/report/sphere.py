@@ -33,7 +33,10 @@ INSET = 0.24  # width of the whole sphere in a corner of an enlarged drawing, re
 
 @dataclass(frozen=True)
 class Window:
-    """The part of the sphere that is drawn: a square around ``centre`` on the plane of the drawing, in radii."""
+    """The part of the sphere that is drawn: a square in the plane of the drawing, in units of the sphere's radius.
+
+    The square has the middle ``centre``, and its sides are 2*half long.
+    """
 
     centre: tuple[float, float] = (0.0, 0.0)
     half: float = ROOM
@@ -45,7 +48,7 @@ class Window:
 
     @property
     def spacing(self) -> float:
-        """Degrees between the parallels: the widest spacing with at least four across the window."""
+        """Degrees between the parallels of the grid: the widest one in GRIDS that gives the window four parallels."""
         across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
@@ -55,7 +58,7 @@ class Window:
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return a divisor that makes numbers of about ``size`` easy to read, and their unit after it, such as mm for m."""
+    """Return a divisor for numbers of about ``size``, and the unit with a prefix: (0.002, "m") -> (0.001, "mm")."""
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
@@ -69,7 +72,10 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return the axes of a view with the path in front, shape (3, 3): the rows are right, up and toward the eye."""
+    """Return the viewing axes from which the path of directions lies in front, shape (3, 3).
+
+    The rows are the unit vectors to the right, upward and toward the eye.
+    """
     middle = directions.mean(axis=0)
     level = np.hypot(middle[0], middle[1])
     azimuth = ASIDE + (np.arctan2(middle[1], middle[0]) if level > 0.05 else 0.0)
@@ -81,7 +87,7 @@ def _eye(directions: Floats) -> Floats:
 
 
 def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
-    """Return a view from above the middle of a path and a window around it; None if the path fills the sphere."""
+    """Return viewing axes that look down on the middle of a path, and a window around it; None for a large path."""
     middle = directions.mean(axis=0)
     length = float(np.linalg.norm(middle))
     if length < 0.5:
@@ -101,7 +107,7 @@ def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
 
 
 def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
-    """Draw a thin curve on the sphere, faint on the far side."""
+    """Draw a thin curve on the sphere; the part on the far side is faint."""
     x, y, z = view @ points.T
     for visible, opacity in ((z >= 0, 1.0), (z < 0, BACK)):
         mask = np.where(visible, 1.0, np.nan)
@@ -134,7 +140,10 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 
 
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
-    """Draw the level curves of a function of direction on the near side of the sphere; return whether there are any."""
+    """Draw level curves of ``value``, a function of direction, on the near side of the sphere.
+
+    Return False, and draw nothing, if the function is constant.
+    """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
     depth = 1.0 - x * x - y * y
@@ -152,10 +161,10 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: 
 def _path(
     axes: Any, points: Floats, gaps: NDArray[np.bool_], front: NDArray[np.bool_] | None = None, width: float = 1.3
 ) -> None:
-    """Draw a path in the plane, points of shape (n, 2), coloured from dark at its start to light at its end.
+    """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end.
 
-    ``gaps`` marks the points that are too far from the next one to be joined with it; if there are many, the points are
-    not joined at all. ``front`` marks the points in front of the sphere.
+    ``gaps`` is true for points that are too far from the next point to be joined with it; if there are many gaps, only
+    the points are drawn. ``front`` is true for points on the near side of the sphere.
     """
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
@@ -187,7 +196,10 @@ def _path(
 
 
 def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
-    """Return which directions of a path of this extent, rad, are too far from the next one to be joined with it."""
+    """Return a mask of the directions that are too far from the next direction of a path to be joined with it.
+
+    ``extent`` is the size of the path, rad.
+    """
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     return np.append(steps > LONGEST * extent, False)
 
@@ -266,7 +278,7 @@ def draw_directions(
 
 
 def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
-    """Return the lower left point, in fractions of the axes, of a place for the inset in the corner with least path."""
+    """Return the lower left point of the inset, in fractions of the axes: in the corner with the fewest path points."""
     across = 0.5 + (x - window.centre[0]) / (2.0 * window.half)
     up = 0.5 + (y - window.centre[1]) / (2.0 * window.half)
 
@@ -282,7 +294,7 @@ def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
 
 def _sphere(axes: Any, directions: Floats, view: Floats, labels: tuple[str, ...], window: Window,
             is_inset: bool = False) -> None:  # fmt: skip
-    """Draw a path on the part of the sphere in a window."""
+    """Draw the part of the sphere inside a window, and a path of directions on it."""
     axes.set_aspect("equal")
     axes.set_xlim(window.centre[0] - window.half, window.centre[0] + window.half)
     axes.set_ylim(window.centre[1] - window.half, window.centre[1] + window.half)

@@ -16,7 +16,10 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of ratios of times: one row per motion, one dot per power of ten of the error."""
+    """Return a matplotlib Figure of other programs' times divided by symrot's times at equal error.
+
+    Each motion has a row, with one dot per power of ten of the error.
+    """
     from matplotlib.figure import Figure
 
     studies = list(suite["studies"].values())

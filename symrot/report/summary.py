@@ -95,7 +95,7 @@ def _numbers(values: list[Any], digits: int = 6) -> str:
 
 
 def _value(text: str) -> float:
-    """Return the number that an exact text represents, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
+    """Return a number that is given as text, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
     numerator, _, denominator = text.partition("/")
     return float(numerator) / float(denominator or 1)
 
@@ -187,7 +187,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return a row (label, text) for each reason: the quantities that are not conserved, and this reason."""
+    """Return rows (label, text) that list the quantities that are not conserved, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])

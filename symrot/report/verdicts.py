@@ -14,7 +14,7 @@ from symrot.report.layout import duration, one_line, room
 __all__ = ["check", "lines"]
 
 INDENT = 18
-"""The column at which what a verdict says begins."""
+"""The column at which the texts of a verdict begin, after their labels."""
 
 VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
 """The verdicts in the order in which they are counted."""
@@ -28,7 +28,7 @@ def check(
     progress: Callable[[str], None] = lambda text: None,
     stated: Mapping[str, Any] | None = None,
 ) -> list[Verdict]:
-    """Decide a claim (text or LaTeX), or all claims of a file, and return the verdicts.
+    """Check a claim (text or LaTeX), or all claims of a file, and return the verdicts.
 
     ``stated`` is the context of a claim in words: where, body, frame and sequence.
 
@@ -66,16 +66,21 @@ def _units(words: Sequence[str]) -> dict[str, str]:
     return {name.strip(): unit for name, _, unit in pairs}
 
 
+SIGNS = "=≈≃≤≥⩽⩾<>≠"
+"""The signs of relations. Every claim as text has one of them, or a backslash if it is LaTeX."""
+
+
 def _is_file(source: str) -> bool:
-    """Return whether an argument is the name of a file; a text without ``=`` cannot be a claim."""
-    return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
+    """Return whether the argument of `symrot check` names a file instead of stating a claim, which has a sign."""
+    is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
+    return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
     """Return verdicts as lines of text.
 
-    A single claim is shown in full. For a file, the claims that are not true are shown in full, with a count of all
-    claims.
+    The verdict on a single claim is shown in full. For a file, only verdicts on claims that are not true are shown in
+    full, followed by a count of all verdicts.
     """
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
@@ -102,7 +107,7 @@ def _full(verdict: Verdict, head: str) -> list[str]:
 
 
 def _with_carets(lines: Sequence[str], repair: Repair) -> list[str]:
-    """Return the lines of a repair with carets under the pieces that differ from the claim."""
+    """Return the lines of a suggested correction, with carets (^) below the characters that differ from the claim."""
     rows, place = [], 0
     for line in lines:
         piece = line[INDENT:]

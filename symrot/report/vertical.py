@@ -1,4 +1,4 @@
-"""The angles of a body to the vertical: of a top under gravity, or of a satellite whose local vertical goes around."""
+"""Angles between a body and the vertical: for a top under gravity, or for a satellite, whose local vertical rotates."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -36,18 +36,20 @@ def has_vertical(scene: Any) -> bool:
 
 
 def local_vertical(t: Floats, mean_motion: float) -> Floats:
-    """Return the radius of the circular orbit, space components, shape (n, 3), as a gravity gradient torque has it."""
+    """Return the upward vertical of a satellite: the unit vector along the orbit's radius, space components, (n, 3).
+
+    The orbit is the circular orbit of a gravity gradient torque, with the given mean motion, rad/s.
+    """
     phase = mean_motion * t
     return np.stack([np.cos(phase), np.sin(phase), np.zeros_like(phase)], axis=-1)
 
 
 def vertical_angles(trajectory: Any) -> VerticalAngles:
-    """Return the angles to the vertical of a motion whose scene has one; see :func:`has_vertical`.
+    """Return the angles between the body and the vertical in a motion; :func:`has_vertical` must be true of its scene.
 
-    Under gravity it is the angle of the centre of mass, seen from the fixed point, to the upward vertical. Under a
-    gravity gradient it is the angle of the long axis, which is the axis of least inertia, to the local vertical, with
-    its parts in the plane of the orbit and out of it. The axis is taken in the direction that is closer to the local
-    vertical at the start.
+    Under gravity there is one angle: of the line from the fixed point to the centre of mass, to the upward vertical.
+    Under a gravity gradient there are three, of the long axis (the axis of least inertia) to the local vertical: in the
+    plane of the orbit, out of it, and in all. The axis points to the side that is closer to the vertical at the start.
     """
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":

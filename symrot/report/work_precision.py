@@ -28,7 +28,10 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table of a study as lines: per power of ten of the error, the shortest time, and all ratios to it."""
+    """Return a table as lines of text, with one column for each power of ten of the error.
+
+    It gives the shortest time of all methods, and the ratio of each method's time to it.
+    """
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -125,7 +128,7 @@ def read_study(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got text that is not JSON") from None
     if not isinstance(study, dict) or study.get("format") != FORMAT:
-        raise InputError(f"{label}: expected a study of `symrot bench` of the format {FORMAT!r}, got another")
+        raise InputError(f"{label}: expected a study of `symrot bench` of the format {FORMAT!r}, got another format")
     try:
         whole = _positive(study) and bool(lines(study))
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
@@ -138,7 +141,7 @@ def read_study(path: Path) -> dict[str, Any]:
 
 
 def _positive(study: Mapping[str, Any]) -> bool:
-    """Return whether all times of a study are positive and finite, and no error is negative."""
+    """Return whether the numbers of a study make sense: all times positive and finite, and no error negative."""
     times = [cell["seconds"] for row in study["decades"] for cell in (row, *row["methods"].values())]
     errors = [run["error"] for run in study["runs"]] + [row["error"] for row in study["decades"]]
     times += [run["seconds"] for run in study["runs"]]
@@ -146,7 +149,7 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the ratios of the times of two studies, by method and power of ten of the error, and the least errors.
+    """Return a comparison of two studies: ratios of times by method and power of ten of the error, and least errors.
 
     Raises
     ------
@@ -171,7 +174,7 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected two studies with a common method and a common decade of the error, got none in common"
+            "--compare: expected studies with a common method at a common power of ten of the error, got none in common"
         )
     return {
         "format": "symrot comparison 1",

@@ -22,7 +22,7 @@ OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
-    """The look of a method's curve: colour, marker and dash."""
+    """The style of a method's curve: colour, marker and dash."""
 
     colour: str
     marker: str
@@ -56,7 +56,10 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return two lists of points (error, time): the runs that no other run beats in both, by error; the other runs."""
+    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs.
+
+    The curve consists of the runs for which no other run is both faster and more accurate, in the order of the error.
+    """
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     best: list[tuple[float, float]] = []

@@ -66,20 +66,20 @@ class About(NamedTuple):
 
 
 def about(trajectory: Any) -> About:
-    """Return the origin of a trajectory."""
+    """Return the scene, the method and the tolerance with which a trajectory was computed."""
     scene = trajectory.scene
     return About(scene.name, scene.title, scene.source, trajectory.method, trajectory.tolerance)
 
 
 def event_array(number: int, quantity: str) -> str:
-    """Return the name of an array in a file: a quantity at the times of one event, the first of which has number 1."""
+    """Return the name of the array in a file that holds a quantity at the times of one event; events count from 1."""
     return f"event_{number}_{quantity}"
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
-    """Return the time and the named quantities of a trajectory, by default its output, each with its labels.
+    """Return the time and the named quantities of a trajectory with labels; default: the scene's output quantities.
 
-    Euler angles are followed by the quantity :data:`LOCK`. It is true for samples in gimbal lock, where only the sum or
+    After Euler angles comes the quantity :data:`LOCK`, which is true for samples at gimbal lock: there only the sum or
     the difference of two angles is defined.
 
     Raises

@@ -1,4 +1,4 @@
-"""Samples of a motion as other packages take them: rotations of SciPy, data frames of pandas, data sets of xarray."""
+"""Samples of a motion, and their conversion to rotations of SciPy, data frames of pandas and data sets of xarray."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 
 class Samples(ABC):
-    """The angular velocity and the attitude of a motion at times ``t``, and quantities that follow from them alone.
+    """The angular velocity and the attitude of a motion at times ``t``, and quantities computed from these two alone.
 
     The methods compute with samples of any shape: (m,) for one motion, (n, m) for n motions.
     """
@@ -84,7 +84,7 @@ class Samples(ABC):
 
     @cached_property
     def rotation(self) -> Any:
-        """The attitudes as a ``scipy.spatial.transform.Rotation`` from body to space; n motions one after another."""
+        """The attitudes, body to space, as one ``scipy.spatial.transform.Rotation``; motions follow one another."""
         from scipy.spatial.transform import Rotation
 
         return Rotation.from_quat(self.quaternion.reshape(-1, 4)[:, [1, 2, 3, 0]])

@@ -177,7 +177,10 @@ def _saved(content: Any) -> SavedTrajectory:
 
 
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
-    """Return the quantities in a file with their labels; raise ValueError if an array does not fit its description."""
+    """Return the quantities in a file with their labels; raise ValueError if an array has an unexpected shape.
+
+    ``metadata`` describes the arrays, and ``array`` returns the array of a name.
+    """
     items = []
     for name, entry in metadata["arrays"].items():
         values, components = content[array(name)], tuple(map(str, entry["components"]))

@@ -44,7 +44,7 @@ def dataframe(items: Sequence[Labelled], origin: About) -> Any:
     """Return a pandas DataFrame with one row for each sample and one column for each component.
 
     The index is the time ``t``, s; for the samples of n motions, shape (n, m), it is (``trajectory``, ``t``). The
-    attributes ``units``, ``frames`` and ``meanings`` are dicts by column, the others name the scene and the method.
+    attributes ``units``, ``frames`` and ``meanings`` are dicts by column; further attributes name the scene and method.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def dataframe(items: Sequence[Labelled], origin: About) -> Any:
 
 
 def _lead(items: Sequence[Labelled]) -> tuple[int, ...]:
-    """Return the leading dimensions of all arrays: (m,) for m samples of one motion, (n, m) for n motions."""
+    """Return the dimensions that precede the components: (m,) for m samples of one motion, (n, m) for n motions."""
     if len(items) < 2:
         return items[0].values.shape
     item = items[1]

@@ -161,9 +161,9 @@ def _rows(value: Any, where: str) -> Matrix:
 
 
 def refuse_two(attitude: Any, quaternion: Any) -> None:
-    """Raise InputError if a call has both an attitude and a quaternion; None is no value."""
+    """Raise InputError if a call gives both an attitude and a quaternion, that is, if neither argument is None."""
     if attitude is not None and quaternion is not None:
-        raise InputError(f"attitude: expected attitude or quaternion, got both, {show(attitude)}")
+        raise InputError(f"attitude: expected either attitude or quaternion, got both (attitude is {show(attitude)})")
 
 
 def read_sequence(value: Any, where: str) -> str:
@@ -231,7 +231,11 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def _by_shape(value: Any) -> Any:
-    """Return the table that a list stands for: four numbers, three rows, or a sequence with its angles in rad."""
+    """Return an attitude that is given as a list in the form of a table: ``[1, 0, 0, 0]`` -> ``{"quaternion": ..}``.
+
+    The list holds the four numbers of a quaternion, the three rows of a matrix, or a sequence with its angles in rad.
+    A value of another form is returned unchanged.
+    """
     match value:
         case [str(sequence), list() as angles]:
             return {"sequence": sequence, "angles": angles}

@@ -121,7 +121,7 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return an inertia tensor in which negligible products of inertia (rounding errors) are replaced by zero."""
+    """Return an inertia tensor with products of inertia replaced by zero where they are only rounding errors."""
     limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
@@ -161,7 +161,7 @@ _entry = number("an entry of an inertia tensor in kg m^2")
 
 
 def _rows_of_tensor(value: Any, where: str) -> Matrix:
-    """Return an inertia tensor given by three rows; products that differ by rounding are replaced by their mean."""
+    """Return an inertia tensor given by three rows; entries ij and ji that differ by rounding become their mean."""
     if len(value) != 3 or not all(isinstance(row, list | tuple) and len(row) == 3 for row in value):
         fail(where, "three rows of three numbers in kg m^2, products with their minus sign", value)
     rows = [[_entry(item, f"{where}[{i}][{j}]") for j, item in enumerate(row)] for i, row in enumerate(value)]
@@ -189,7 +189,10 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return the body with the moments of inertia of a scene, which refer to the point of rotation."""
+    """Return the body whose inertia tensor a scene gives directly, about the point of rotation.
+
+    ``values`` holds its mass, name, point of rotation and centre of mass.
+    """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -237,9 +240,9 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the entries for the keys ``mass`` and ``density`` of a shape.
+    """Return the rules for reading the keys ``mass`` and ``density`` of a shape.
 
-    For the shape ``points`` there are no such keys, since each point has its own mass.
+    The shape ``points`` has neither key, since each point has its own mass.
     """
     if shape.kind == "points":
         return {}
@@ -265,7 +268,10 @@ def _density(unit: str) -> Reader:
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
-    """Return the solid that a table with the key ``shape`` describes, and the values of the other keys of the table."""
+    """Return the shape that a table with the key ``shape`` describes, and the values of all keys of the table.
+
+    ``others`` holds the rules for the keys that do not describe the shape, such as ``name``.
+    """
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
@@ -310,7 +316,8 @@ def _bounded(value: Any, where: str) -> None:
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
     """Return a body composed of shapes, with its inertia about its centre of mass or about the fixed point.
 
-    ``source`` describes the body; ``of_parts`` is the place of its parts in the scene, for errors.
+    ``source`` describes the body; ``where`` and ``of_parts`` are the places of the body and of its shapes in the scene,
+    for error messages.
     """
     return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
 

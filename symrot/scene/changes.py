@@ -1,4 +1,4 @@
-"""Changes of a scene: the place in its content that a key names, and the content with other values there.
+"""Changes of a scene, such as ``weight=2``: finds the value that a key names and replaces it in the scene's content.
 
 A key is a path in the scene file, such as ``body.mass`` or ``torque[0].weight``, or a short name: part of the initial
 state (``omega``, ``omega_2``, ``attitude``), of the span (``t``, ``samples``), the ``tolerance``, a constant of the
@@ -57,7 +57,7 @@ _PREFIXED = re.compile(r"torque(\d{1,4})_(\w+)")
 
 
 class Place(NamedTuple):
-    """A place in the content of a scene, and the component (from 0) if the key names one number of a vector."""
+    """The place of a value in the content of a scene: its path, and an index from 0 if it is one number of a vector."""
 
     path: Path
     component: int | None = None
@@ -79,7 +79,7 @@ def changed(
     body: Body,
     torques: Sequence[Torque],
 ) -> Content:
-    """Return the content of a scene with other values at the places that the keys of ``changes`` name.
+    """Return the content of a scene in which the values named by the keys of ``changes`` are replaced.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def changed(
 
 
 def replaces_shapes(key: str) -> bool:
-    """Return whether a key changes moments or centre of mass, so that they no longer follow from the shapes."""
+    """Return whether a key sets moments of inertia or the centre of mass, which otherwise follow from the shapes."""
     return key in (*TENSOR, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
 
@@ -148,7 +148,7 @@ def _place(scene: _Scene, key: str) -> Place:
         return places[0]
     if places:
         listed = " or ".join(map(_text, places))
-        raise InputError(f"{key}: expected a name of one value of the scene, got one of two; write {listed}")
+        raise InputError(f"{key}: expected the name of one value of the scene, got a name of two; write {listed}")
     known = [*TABLES[3:], *SHORT, *RATES, "principal", *TENSOR, *_names(scene)]
     hint = nearest(key, known)
     raise InputError(
@@ -157,7 +157,7 @@ def _place(scene: _Scene, key: str) -> Place:
 
 
 def path_of(key: str) -> Path:
-    """Return the steps of a path, ``("torque", 0, "weight")`` for ``torque[0].weight``; () if the text is no path."""
+    """Return a path as keys and indices: ``torque[0].weight`` -> ``("torque", 0, "weight")``; () if it is no path."""
     steps: list[str | int] = []
     position = 0
     for match in _STEP.finditer(key):
@@ -170,7 +170,10 @@ def path_of(key: str) -> Path:
 
 
 def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
-    """Yield each place of a torque's constant; if the key has no torque number, in the order of the torques."""
+    """Yield the place of each torque constant that a key names, in the order of the torques.
+
+    ``torque2_weight`` names a constant of the second torque; ``weight`` may name constants of several torques.
+    """
     prefixed = _PREFIXED.fullmatch(key)
     candidates = [(int(prefixed[1]) - 1, prefixed[2])] if prefixed else [(k, key) for k in range(_count(scene))]
     for index, name in candidates:
@@ -249,7 +252,10 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the components of a vector of a scene: from its content if listed there, otherwise as they were read."""
+    """Return the three components of the vector at a path of the content.
+
+    If the content gives the vector in another form, such as ``omega_space``, the components that were read are used.
+    """
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")
@@ -264,7 +270,7 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
 
 
 def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
-    """Replace the body by a body with one other moment of inertia, but the same mass and centre of mass."""
+    """Set the principal moments or one entry of the inertia tensor; mass and centre of mass stay the same."""
     if key == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
@@ -281,7 +287,7 @@ def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _moments(scene: _Scene, inertia: Content) -> Content:
-    """Return the content of a body that is given by its moments of inertia instead of its shapes."""
+    """Return the table ``[body]`` of the scene's body, given by the moments ``inertia`` instead of by its shapes."""
     body, content = scene.body, scene.content["body"]
     moments: Content = {**inertia, "about": body.about, "name": content.get("name", "")}
     if body.mass is not None:
@@ -296,7 +302,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
 
 
 def _tensor(scene: _Scene) -> list[list[Any]]:
-    """Return the rows of the inertia tensor: from the content, with earlier changes, or computed from the shapes."""
+    """Return the rows of the inertia tensor: as the content gives it, or else as computed from the shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:
             return [[a, 0, 0], [0, b, 0], [0, 0, c]]

@@ -1,4 +1,4 @@
-"""The content of a scene: the table of a scene file as plain values, made from Python values and printed as TOML.
+"""The content of a scene: the keys and values of its file, converted from Python values and printed as TOML.
 
 Standard library only. NumPy arrays and rotations of SciPy are recognised by their methods, so neither is imported.
 """
@@ -23,7 +23,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def plain(value: Any, where: str, depth: int = 0) -> Any:
-    """Return a value as it would be in a scene file: arrays as lists, a rotation of SciPy as a quaternion.
+    """Convert a Python value to the form of a scene file: an array to a list, a rotation of SciPy to a quaternion.
 
     Raises
     ------
@@ -52,14 +52,14 @@ def _scalar_first(rotation: Any, where: str) -> list[float]:
 
 
 def toml_text(content: Content) -> str:
-    """Return the TOML text of a scene; numbers keep their exact values."""
+    """Return the content of a scene as TOML text; numbers keep their exact values."""
     lines: list[str] = []
     _write_table(content, "", lines)
     return "\n".join(lines).strip() + "\n"
 
 
 def _write_table(content: Content, name: str, lines: list[str]) -> None:
-    """Append the lines of a table: its values first, then its tables and its lists of tables."""
+    """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables."""
     later = [key for key, value in content.items() if _is_section(key, value, name)]
     lines += [f"{_key(key)} = {_value(value)}" for key, value in content.items() if key not in later]
     for key in later:
@@ -71,7 +71,7 @@ def _write_table(content: Content, name: str, lines: list[str]) -> None:
 
 
 def _is_section(key: str, value: Any, name: str) -> bool:
-    """Return whether a value is written below a header: a table at the top, or a list of tables such as torques."""
+    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables."""
     if isinstance(value, list):
         return bool(value) and all(isinstance(item, dict) for item in value)
     return isinstance(value, dict) and not name

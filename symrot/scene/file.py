@@ -127,14 +127,14 @@ def _parse(text: str, label: str) -> dict[str, Any]:
     import tomllib  # compiles its patterns when imported
 
     if _longest_key(text) > MOST_PARTS:
-        raise InputError(f"{label}: expected keys of at most {MOST_PARTS} parts, got a longer one")
+        raise InputError(f"{label}: expected keys of at most {MOST_PARTS} parts (a.b.c has 3), got a key of more parts")
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as reason:
         fault = str(reason).splitlines()[0][:200]
         raise InputError(f"{label}: expected a TOML document, got a fault: {fault[:1].lower()}{fault[1:]}") from None
     except RecursionError:
-        raise InputError(f"{label}: expected a TOML document, got one nested too deeply") from None
+        raise InputError(f"{label}: expected a TOML document, got tables or lists nested too deeply") from None
     except (ValueError, ArithmeticError) as reason:  # an integer of more than 4300 digits, an impossible date
         fault = str(reason).partition(":")[0][:200]
         raise InputError(f"{label}: expected a TOML document, got a fault: {fault[:1].lower()}{fault[1:]}") from None

@@ -14,11 +14,14 @@ Point = tuple[float, float, float]
 Facet = tuple[Point, Point, Point]
 
 MOST_FACETS = 5000
-"""Number of triangles of a mesh up to which pictures show the mesh; larger meshes are drawn as a box."""
+"""Largest number of triangles of a mesh that pictures show; a body with a larger mesh is drawn as a box."""
 
 
 class MeshProperties(NamedTuple):
-    """The mass properties of a mesh, and its triangles, m, for pictures; none if there are more than MOST_FACETS."""
+    """The mass properties of a mesh, and its triangles, m, for pictures.
+
+    The list of triangles is empty for a mesh of more than MOST_FACETS triangles.
+    """
 
     properties: MassProperties
     facets: tuple[Facet, ...]

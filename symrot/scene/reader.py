@@ -48,7 +48,7 @@ def key_path(where: str, key: str) -> str:
 
 
 def fail(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
-    """Raise InputError with one sentence: the place, the expectation, the value and the reason."""
+    """Raise InputError with the sentence "where: expected .., got .. (reason)"."""
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
@@ -62,7 +62,7 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key; a missing key has its default.
+    """Return the values of a table by key, each read by the rule in ``entries``; a missing key gets its default.
 
     Raise InputError if a key is unknown, or if a key that ``entries`` requires is missing.
     """

@@ -66,7 +66,7 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a value is a float of usual size, so that no further check is needed."""
+    """Return whether a value is a finite float of ordinary size (or 0.0), which needs no further check."""
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 
@@ -171,10 +171,10 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
             fail(at, "increasing times; only a switching time may occur twice, for the samples before and after the "
                      f"jump, got {after!r} s twice")  # fmt: skip
         if after == before and length < 2:
-            fail(at, f"two samples or more between switching times, got one at {after!r} s")
+            fail(at, f"two samples or more between switching times, got only one, at {after!r} s")
         length = 1 if after == before else length + 1
     if length < 2:
-        fail(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
+        fail(place, f"two samples or more between switching times, got only one, at {times[-1]!r} s")
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:

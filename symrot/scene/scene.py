@@ -235,7 +235,10 @@ class Scene:
 
 
 class _Origin(NamedTuple):
-    """The content from which a scene was read, and the objects that were read, to notice if one is replaced later."""
+    """The content from which a scene was read, and the objects made from it.
+
+    Comparing these objects with the scene's present ones shows which of them were replaced later.
+    """
 
     content: Content
     label: str
@@ -244,12 +247,12 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether a scene still has the body and the torques that were read from its content."""
+        """Return whether a scene still has the body and the torques that were read from its content, unreplaced."""
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the body and the torques of a scene, for each of which scene files have several notations."""
+    """Return body and torques of a scene; :meth:`Scene.to_dict` refuses to write them if they were replaced."""
     return scene.body, scene.torques, scene.table
 
 
@@ -276,7 +279,7 @@ _WRITERS: dict[str, Callable[[Any], Any]] = {
     "output": _output_content,
     "accuracy": lambda tolerance: {"tolerance": tolerance},
 }  # fmt: skip
-"""Key of a table -> function that writes it from the value of the scene."""
+"""Key of a scene file -> function that converts the scene's value to the file's content."""
 
 
 SceneSource = Scene | Mapping[str, Any] | str | Path

@@ -1,4 +1,4 @@
-"""Changes of a scene as the option ``--set`` of the commands takes them: text, ``KEY=VALUE``. Standard library only."""
+"""The option ``--set KEY=VALUE`` of the commands, which changes values of a scene. Standard library only."""
 
 from collections.abc import Sequence
 from decimal import Decimal

@@ -1,4 +1,4 @@
-"""The tables of a scene other than its body and its torques: initial state, span, output and accuracy, with readers.
+"""The small tables of a scene file (initial state, span, output and accuracy) and the functions that read them.
 
 All numbers are exact. This module does not use SymPy.
 """
@@ -185,7 +185,7 @@ def _read_output(value: Any, where: str) -> Output:
 
 
 def read_tolerance(tolerance: float) -> float:
-    """Return the tolerance of a call, after checks.
+    """Return a tolerance that a user gives in Python or by an option, after a check of its range.
 
     Raises
     ------

@@ -76,7 +76,7 @@ class Torque(NamedTuple):
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
-        """Return a copy of the torque in which one number has another value."""
+        """Return a copy of the torque in which one number, named as in :meth:`constant`, has another value."""
         if component is None:
             return self._replace(values={**self.values, name: value})
         vector = tuple(value if k == component else entry for k, entry in enumerate(self.vector(name)))
@@ -226,9 +226,9 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the values of an ``expression`` torque after a check that its formulas contain only known names.
+    """Return the values of an ``expression`` torque, after a check that its formulas contain only known names.
 
-    If a formula contains pi, it becomes a parameter.
+    If a formula contains pi, pi is added to the parameters.
     """
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
@@ -307,4 +307,4 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
             return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
         return Torque(name, fields)
     except RecursionError:
-        raise InputError(f"{where}: expected a formula of fewer levels, got {show(entries)}") from None
+        raise InputError(f"{where}: expected a formula with fewer nested levels, got {show(entries)}") from None

@@ -1,1 +1,4 @@
-"""Sweeps: many motions of one scene by a design of varied values, in chunks that a store collects."""
+"""Sweeps: many motions of one scene with varied values.
+
+They are computed in chunks, and a store collects the results.
+"""

@@ -1,8 +1,8 @@
-"""One chunk of a sweep: the trajectories of a range of indices, from their draws to their outputs.
+"""One chunk of a sweep: computation of the outputs of the trajectories with consecutive indices.
 
-The outputs of a trajectory depend only on the job and on the index of the trajectory: its draw does, and its equations
-are chosen by its own constants (:meth:`symrot.ensemble.variation.Variation.patterns`). A trajectory that cannot be
-computed has NaN as outputs, a status and a reason; the others are not affected.
+The outputs of a trajectory depend only on the job and on the index of the trajectory, because its varied values do, and
+its equations are chosen by its own constants (:meth:`symrot.ensemble.variation.Variation.patterns`). A trajectory that
+cannot be computed has NaN as outputs, a status and a reason; the others are not affected.
 """
 
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ MOST_READINGS = 4096  # scenes of distinct values that a process remembers
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """The work of a sweep: a design, the scene that it varies, and the outputs with their times and accuracy."""
+    """The description of a sweep: the scene, the design (which values vary), and outputs with times and accuracy."""
 
     design: Design
     scene: Scene
@@ -87,7 +87,7 @@ def compute(job: Job, start: int, stop: int) -> Chunk:
 
 
 def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
-    """Return the arguments of the ensemble, and the rows whose scenes can be read."""
+    """Return the arguments of the ensemble, and the rows whose varied values give a valid scene."""
     n, scene = len(draws.values), job.scene
     inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
     rows = np.arange(n)
@@ -104,7 +104,10 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
 
 
 def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
-    """Write the constants of the scenes with the values at some paths into the inputs; return the rows with a scene."""
+    """Read the scene with the varied values of each row, and write its constants into ``inputs``.
+
+    Return the rows that gave a valid scene; for each other row, ``messages`` gets the reason.
+    """
     assert job.content is not None
     constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})
     n, moved = len(draws.values), any(path[0] == "initial" for path in paths)
@@ -133,7 +136,10 @@ Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quat
 
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
-    """Return the function from values at some paths to the constants of the scene, or to the reason why it has none."""
+    """Return a function that puts values at some paths of the scene file, and returns the constants of the scene.
+
+    If the file with these values is not valid, the function returns the reason.
+    """
     names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
     @lru_cache(maxsize=MOST_READINGS)
@@ -152,9 +158,9 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
 
 
 def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str]) -> Rows:
-    """Return the rows whose values an ensemble accepts; for each other row, record the reason.
+    """Return the rows whose values the ensemble accepts; for each other row, write the reason into ``messages``.
 
-    The rows are halved until the rows that cannot be used are alone.
+    Rejected rows are found by bisection: a rejected group is halved until it has one row.
     """
     if not len(rows):
         return rows
@@ -170,7 +176,7 @@ def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str
 
 
 def _alone(error: Exception) -> str:
-    """Return the message of an error about the only trajectory of an ensemble, without its index there."""
+    """Return the message of an error in an ensemble of one trajectory, without the index of the trajectory."""
     return str(error).replace(", trajectory 0", "").replace(" in trajectory 0", "").replace("parameters: ", "")
 
 
@@ -178,7 +184,7 @@ def _propagate(
     job: Job, inputs: _Inputs, rows: Rows, samples: Floats, outputs: dict[str, Floats], status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:  # fmt: skip
-    """Write the outputs of some rows, which have the same equations of motion, into the arrays."""
+    """Propagate some rows, which have the same equations of motion, and write their outputs into the arrays."""
     try:
         ensemble = propagate_ensemble(
             job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance
@@ -199,7 +205,7 @@ def _propagate(
 
 
 def prepared(job: Job) -> Job:
-    """Return the job with a scene whose kernels compute the attitude if an output needs it."""
+    """Return the job, with a scene that also computes the attitude if an output needs it."""
     quantities = tuple(dict.fromkeys(output.quantity for output in job.outputs))
     output = job.scene.output._replace(quantities=quantities)
     return replace(job, scene=replace(job.scene, output=output))

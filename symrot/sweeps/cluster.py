@@ -1,4 +1,4 @@
-"""Chunks of a sweep by the workers of a Dask cluster; their results come to this process, which alone writes them."""
+"""Computation of the chunks of a sweep by the workers of a Dask cluster; only this process writes the results."""
 
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -37,8 +37,8 @@ def _client(address: str) -> Any:
 def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
     """Yield the chunks of a job in the order in which they are complete, computed by the workers of a Dask cluster.
 
-    Dask computes the chunks of a lost worker elsewhere. At most two chunks for each thread of the cluster are under
-    way.
+    If a worker is lost, Dask computes its chunks on another worker. At most two chunks for each thread of the cluster
+    are submitted at a time.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The design of a sweep: what varies, by which laws, in how many trajectories; and the values of any of them.
+"""The design of a sweep: which values vary, by which laws, in how many trajectories; and the values of a trajectory.
 
 Trajectory i belongs to draw ``i // g`` and grid point ``i % g``, where g is the number of points in the product of all
 grids. Each draw of the distributions is thus used at every grid point, and a sweep of more trajectories begins with the
@@ -38,7 +38,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Draws:
-    """The values of some trajectories of a design, one row for each."""
+    """The varied values of some trajectories of a design, one row for each trajectory."""
 
     values: Floats  # (n, axes)
     attitudes: Floats | None  # (n, 4), unit quaternions; None: the attitude of the scene
@@ -140,20 +140,20 @@ def _choice(value: object, known: Sequence[str], where: str) -> None:
 
 
 def _require_apart(axes: Sequence[Axis]) -> None:
-    """Raise InputError if two axes may set the same place."""
+    """Raise InputError if two of the varied values may set the same number of the scene."""
     initial = [axis.target.path for axis in axes if axis.target.path[:1] == ("initial",)]
     rates = [axis.target.name for axis in axes if axis.target.unit == "rad/s" and axis.target.name.startswith("omega_")]
     if initial and rates:
         raise InputError(
-            f"vary: expected angular velocities either by name or by path in the scene file, got {rates[0]} beside a "
-            "path in initial"
+            f"vary: expected angular velocities either by name or by path in the scene file, got both {rates[0]} and "
+            "a path in initial"
         )
     paths = any(axis.target.path[:1] in (("body",), ("torque",)) for axis in axes)
     constants = [axis.target.name for axis in axes if not axis.target.path and axis.target.name not in rates]
     if paths and constants:
         raise InputError(
-            f"vary: expected constants either by name or by path in the scene file, got {constants[0]} beside a path "
-            "in body or torque"
+            f"vary: expected constants either by name or by path in the scene file, got both {constants[0]} and a "
+            "path in body or torque"
         )
 
 
@@ -174,7 +174,7 @@ def _count(count: object, points: int, random: bool) -> int:
 
 
 def _whole(value: object, where: str, low: int, high: int) -> int:
-    """Return a whole number, which may be written as 1e6; raise InputError if it is none, or out of range."""
+    """Return a whole number, which may be written as 1e6; raise InputError if it is not whole or out of range."""
     expectation = f"{where}: expected a whole number from {low} to {high:g}, got {show(value)}"
     if isinstance(value, bool) or not isinstance(value, int | float | str | np.integer):
         raise InputError(expectation)

@@ -22,7 +22,7 @@ MOST_GRID_VALUES = 10_000_000
 
 
 class _Family(NamedTuple):
-    """A family of distributions: its parameters in words, when they are valid, and its quantile function."""
+    """A family of distributions: a description of its parameters, a test of their values, and its quantile function."""
 
     parameters: tuple[str, ...]
     condition: str
@@ -67,13 +67,13 @@ class Distribution:
     numbers: tuple[float, ...]
 
     def quantile(self, u: Floats) -> Floats:
-        """Return the values below which the shares ``u``, 0 < u < 1, of the distribution lie."""
+        """Return the quantiles of the distribution for the probabilities ``u``, 0 < u < 1."""
         return DISTRIBUTIONS[self.family].quantile(u, *self.numbers)
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Values that are used one after the other."""
+    """A law that lists the values to be used, one after the other."""
 
     values: tuple[float, ...]
 

@@ -60,7 +60,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Header:
-    """What a store knows before the first chunk: the identity of the sweep, its arrays and the rows of a chunk."""
+    """The data with which a store is created: identity of the sweep, its arrays, and number of rows in a chunk."""
 
     identity: Mapping[str, str]  # what determines the results, by name
     scene: str
@@ -71,36 +71,45 @@ class Header:
     rows: int
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return the first and the last index plus one of each chunk."""
+        """Return, for each chunk, the index of its first trajectory and the index after its last trajectory."""
         return [(start, min(start + self.rows, self.count)) for start in range(0, self.count, self.rows)]
 
 
 class Store(Protocol):
-    """A place for the results of a sweep. A chunk is either missing or complete, whenever the process ends."""
+    """The interface of stores for the results of a sweep.
+
+    Even if the process is killed, a chunk is missing or complete.
+    """
 
     header: Header
 
     @property
     def alone(self) -> str:
-        """The description of the statistics that replaced the values; empty if the values are there."""
+        """The description of the statistics if they replaced the values of the outputs.
+
+        It is empty if the values are stored.
+        """
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of the chunks that are missing."""
+        """Return the ranges of trajectories, one per chunk, that are still missing."""
 
     def write(self, chunk: Chunk) -> None:
-        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        """Store a chunk; a chunk that is stored already is replaced by the same values."""
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Return the values of one array for the trajectories ``start`` to ``stop``."""
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are there."""
+        """Return whether the values of an array are stored."""
 
     def table(self, name: str) -> NDArray[Any] | None:
         """Return an array of statistics, or None if there is none with this name."""
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        """Store the statistics.
+
+        If ``alone`` (their description) is not empty, remove the values of the outputs afterwards.
+        """
 
 
 def header_of(job: Job, rows: int | None = None) -> Header:
@@ -122,7 +131,7 @@ def header_of(job: Job, rows: int | None = None) -> Header:
 
 
 def _identity(job: Job) -> dict[str, str]:
-    """Return what determines the results of a sweep, by name, as short texts."""
+    """Return the settings that determine the results of a sweep, as short texts by name."""
     import symrot
 
     scene, design = job.scene, job.design
@@ -147,14 +156,14 @@ def _digest(text: str) -> str:
 
 
 def difference(own: Mapping[str, str], other: object) -> str:
-    """Return the names of the entries in which two identities differ, such as ``seed, count``; empty if they agree."""
+    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree."""
     if not isinstance(other, Mapping):
         return "it has no description"
     return ", ".join(name for name in own if own[name] != other.get(name))
 
 
 def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a chunk by the names in the header, without status and messages.
+    """Return the arrays of a chunk, without status and messages, as a map from the names in the header.
 
     ``names`` are the names of the values that vary, in the order of the draws.
     """

@@ -39,15 +39,15 @@ class MemoryStore:
 
     @property
     def alone(self) -> str:
-        """The description of the statistics that replaced the values; the values are there while a sweep runs."""
+        """The description of the statistics if they replaced the values of the outputs; empty while the sweep runs."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of the chunks that are missing."""
+        """Return the ranges of trajectories, one per chunk, that are still missing."""
         return [each for each in self.header.ranges() if self._arrays[STATUS][each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
-        """Add a chunk."""
+        """Store a chunk."""
         own = arrays_of(chunk, self.header.inputs) | {MESSAGE: messages_of(chunk), STATUS: chunk.status}
         for name, values in own.items():
             self._arrays[name][chunk.start : chunk.stop] = values
@@ -61,11 +61,14 @@ class MemoryStore:
         return next((table.values for table in self.tables if table.name == name), None)
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are there."""
+        """Return whether the values of an array are stored."""
         return name in self._arrays
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        """Store the statistics.
+
+        If ``alone`` (their description) is not empty, remove the values of the outputs afterwards.
+        """
         self.tables = tables
         if alone:
             for variable in self.header.variables:

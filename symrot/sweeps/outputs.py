@@ -1,4 +1,4 @@
-"""Outputs of a sweep: quantities of each trajectory at all sample times, at one time, or their extremes and mean.
+"""Outputs of a sweep: quantities of each trajectory at all sample times or at one time, or their extremes and means.
 
 An output is written as text: ``energy`` is the energy at all sample times, ``omega_1@end`` one component at the last
 time, ``axis_z@2.5`` at t = 2.5 s, ``omega_3@max`` the largest value among the samples.
@@ -33,7 +33,7 @@ REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
 
 @dataclass(frozen=True)
 class SweepOutput:
-    """One output: its name, the component of a quantity, and the sample times or the reduction that it uses."""
+    """One output: its name, a component of a quantity, and the times or the reduction (such as ``max``) for it."""
 
     name: str
     quantity: str
@@ -51,7 +51,7 @@ class SweepOutput:
 
 
 def _components(output: Output) -> dict[str, tuple[str, int]]:
-    """Return, for each name of a component, its quantity and its index."""
+    """Return a map from the name of each component, such as ``omega_1``, to its quantity and index."""
     names = {name: (quantity, k) for quantity, parts in COMPONENTS.items() for k, name in enumerate(parts)}
     if output.sequence:
         names |= {f"euler_{output.sequence}_{k + 1}": ("euler", k) for k in range(3)}
@@ -59,7 +59,7 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene whose output section contains the Euler sequence that the outputs of a sweep name, if any."""
+    """Return the scene, extended by the Euler sequence that occurs in the names of a sweep's outputs, if any."""
     from dataclasses import replace
 
     sequences = []
@@ -135,7 +135,7 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
 
 
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return the reduction that a word after @ describes, its time, and the end of the name of the output."""
+    """Return the reduction for a word after @, such as ``end``, its time, and the end of the output's name."""
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:
@@ -151,7 +151,7 @@ def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
 
 
 def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
-    """Return the times, s, at which the outputs need samples; these are fewer if no output needs all times."""
+    """Return the times, s, at which the outputs need samples: all sample times, or fewer if that is enough."""
     whole = any(output.reduction != "at" for output in outputs)
     own = [output.time for output in outputs if output.reduction == "at"]
     return np.unique([*(times.tolist() if whole else []), *own])

@@ -1,7 +1,7 @@
 """Results of a sweep as a folder of Parquet files, which pandas opens: one file for each chunk of trajectories.
 
 If an output has values at all sample times, there is one row for each trajectory and time; otherwise one row for each
-trajectory. A file is renamed to its name when it is complete, so that a file that is there has all its rows.
+trajectory. A file gets its final name when it is complete, so every file with such a name has all its rows.
 """
 
 import json
@@ -35,7 +35,7 @@ DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Par
 
 
 class ParquetStore:
-    """The store of a sweep in the folder at ``path``; the folder of the same sweep is continued.
+    """The store of a sweep in the folder at ``path``. If the folder has results of the same sweep, they are continued.
 
     Raises
     ------
@@ -73,15 +73,15 @@ class ParquetStore:
 
     @property
     def alone(self) -> str:
-        """The description of the statistics that replaced the values; the values are there while a sweep runs."""
+        """The description of the statistics if they replaced the values of the outputs; empty while the sweep runs."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of the chunks that are missing."""
+        """Return the ranges of trajectories, one per chunk, that are still missing."""
         return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
 
     def write(self, chunk: Chunk) -> None:
-        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        """Store a chunk; a chunk that is stored already is replaced by the same values."""
         n, times = chunk.stop - chunk.start, self.header.times
         repeats = len(times) if self._long else 1
         columns: dict[str, Any] = {TRAJECTORY: np.repeat(np.arange(chunk.start, chunk.stop), repeats)}
@@ -142,11 +142,14 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are there; the components of attitudes are columns of their own."""
+        """Return whether the values of an array are stored; for an attitude, each component has its own column."""
         return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        """Store the statistics.
+
+        Raise InputError if ``alone`` is not empty, since this store cannot remove the values.
+        """
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
             write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
@@ -160,7 +163,7 @@ class ParquetStore:
 
 
 def _parts(name: str) -> list[str]:
-    """Return the names of the columns of the components of a quaternion."""
+    """Return the names of the four columns for the components of a quaternion."""
     return [f"{name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
 
 

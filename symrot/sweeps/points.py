@@ -1,6 +1,7 @@
-"""Points of the unit cube for the random values of a sweep, each computed from the seed and its index alone.
+"""Random points of the unit cube, from which the values of a sweep are drawn.
 
-Therefore any process can compute any part of the points, and the parts have the same bits wherever they are cut.
+Each point is computed from the seed and its index alone. Therefore any process can compute any range of points, and the
+points have the same bits however the ranges are chosen.
 
 - ``random``: one Philox stream for each name. Philox computes the k-th number of its stream directly from k.
 - ``latin``: a Latin hypercube: for n points, each name has one point in each of n intervals of equal length. The order
@@ -29,7 +30,7 @@ BLOCK = 4  # words of 64 bits that Philox computes from one value of its counter
 
 
 def _key(seed: int, stream: str, words: int = 2) -> Words:
-    """Return the key of the random numbers with a name."""
+    """Return the key for the random numbers of a named stream."""
     sequence = np.random.SeedSequence(seed, spawn_key=tuple(stream.encode()))
     return sequence.generate_state(words, np.uint64).astype(np.uint64)
 
@@ -42,7 +43,7 @@ def _words(seed: int, stream: str, start: int, stop: int) -> Words:
 
 
 def _uniform(words: Words) -> Floats:
-    """Return numbers in the open interval (0, 1): the middles of 2^52 intervals, exact in doubles."""
+    """Convert random words to numbers in (0, 1): midpoints of 2^52 equal intervals, exact in doubles."""
     return ((words >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
 
 
@@ -60,10 +61,10 @@ def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int)
 
 
 def permuted(index: Words, count: int, keys: Words) -> Words:
-    """Return the places of indices below ``count`` in a permutation of 0 to count - 1 that ``keys`` determine.
+    """Return the images of some indices under a random permutation of 0 to count - 1 that ``keys`` determine.
 
-    A Feistel network permutes the numbers of an even number of bits; an index that it leads to a number of ``count`` or
-    more passes through it again (cycle walking), which gives a permutation of the smaller numbers.
+    A Feistel network permutes all numbers with an even number of bits. It is applied again to an index as long as the
+    result is ``count`` or more (cycle walking); this gives a permutation of the numbers below ``count``.
     """
     half = max(1, (int(count - 1).bit_length() + 1) // 2)
     shift, mask = np.uint64(half), np.uint64(2**half - 1)
@@ -79,14 +80,14 @@ def permuted(index: Words, count: int, keys: Words) -> Words:
 
 
 def _mixed(words: Words) -> Words:
-    """Return well mixed words: the finaliser of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014)."""
+    """Return words with well mixed bits, by the last function of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014)."""
     words = (words ^ (words >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     words = (words ^ (words >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return words ^ (words >> np.uint64(31))
 
 
 class _Sobol:
-    """Sobol points of one sweep; a part that follows an earlier one costs only its own points."""
+    """The Sobol points of one sweep. A range of points that follows the range before it costs no skipping of points."""
 
     def __init__(self, dimensions: int, seed: int) -> None:
         self._dimensions, self._seed, self._lock = dimensions, seed, Lock()
@@ -99,7 +100,10 @@ class _Sobol:
         self._next = 0
 
     def points(self, start: int, stop: int) -> Floats:
-        """Return the points ``start`` to ``stop``; threads take turns, since the position is shared."""
+        """Return the points ``start`` to ``stop``.
+
+        A lock protects the position in the sequence, which threads share.
+        """
         with self._lock:
             return self._points(start, stop)
 

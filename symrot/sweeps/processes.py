@@ -1,7 +1,7 @@
-"""Chunks of a sweep by processes on this machine.
+"""Computation of the chunks of a sweep by several processes on this machine.
 
-A process that is killed costs only the chunks it had; they are computed again by a new one. The processes end with the
-process that started them, however that ends.
+If a process is killed, only the chunks that it was computing are lost; a new process computes them again. The processes
+end when the process that started them ends, even if it is killed.
 """
 
 import multiprocessing
@@ -36,7 +36,7 @@ def cores() -> int:
 
 
 def packed(job: Job) -> bytes:
-    """Return a job as bytes, which :func:`compute_packed` takes."""
+    """Return a job as bytes for :func:`compute_packed`."""
     return pickle.dumps(job)
 
 
@@ -47,7 +47,7 @@ def _unpacked(text: bytes) -> Job:
 
 
 def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
-    """Compute one chunk of a job that is given as pickled bytes; a process unpacks each job once."""
+    """Compute one chunk of a job that is given as pickled bytes; each process unpacks a job only once."""
     return compute(_unpacked(text), start, stop)
 
 
@@ -94,10 +94,10 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Hide the program that called from new processes.
+    """Hide the main program of the caller from new processes.
 
-    They would run it again from its first line, to which a program without ``if __name__ == "__main__"`` would object;
-    a chunk needs nothing of it.
+    New processes would import the main program, which fails for a program without ``if __name__ == "__main__"``. A
+    chunk does not need the main program.
     """
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
@@ -108,7 +108,7 @@ def _without_main() -> Iterator[None]:
 
 
 def _begin() -> None:
-    """Prepare a process: Ctrl-C is left to its parent, and it ends when its parent does."""
+    """Prepare a new process: it ignores Ctrl-C, which its parent handles, and it ends when its parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -121,7 +121,7 @@ def _end_with(sentinel: int) -> None:
 
 
 def _stop(pool: Any) -> None:
-    """End the processes of a pool at once; chunks that they compute are computed again when they are needed."""
+    """End the processes of a pool at once; chunks that they are computing are lost and can be computed again."""
     processes = list((pool._processes or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:

@@ -1,9 +1,9 @@
 """Statistics of the outputs of a sweep, over all trajectories: mean, envelope, percentiles, histogram.
 
-They are computed from the values in the store, in blocks of a fixed number of trajectories, so that they need little
-memory and have the same bits however the sweep was cut into chunks. Percentiles are exact: doubles are mapped to
-integers of the same order, the values are counted in intervals of these integers, and the intervals that contain a
-percentile are narrowed until their values fit in memory.
+They are computed from the values in the store, in blocks of a fixed number of trajectories. So they need little memory,
+and their bits do not depend on the chunks of the sweep. Percentiles are exact: doubles are mapped to integers in the
+same order, the values are counted in intervals of these integers, and the intervals that contain a percentile are
+narrowed until their values fit in memory.
 """
 
 import math
@@ -36,7 +36,7 @@ _CALL = re.compile(r"\s*(\w+)\s*(?:\((.*)\))?\s*", re.DOTALL)
 
 @dataclass(frozen=True)
 class Statistic:
-    """One statistic: its name in :data:`STATISTICS`; the percentages of percentiles; the bins of a histogram."""
+    """One statistic: its name in :data:`STATISTICS`, with percentages (for percentiles) or bins (for a histogram)."""
 
     name: str
     numbers: tuple[float, ...] = ()
@@ -76,7 +76,7 @@ def _read(text: object) -> Statistic:
 def statistics_of(
     store: Store, statistics: Sequence[Statistic], variables: Sequence[Variable], progress: Callable[[str], None]
 ) -> list[Table]:
-    """Return the statistics of some outputs in a complete store, over the trajectories that have a value."""
+    """Compute statistics of outputs in a complete store, over all trajectories that have a value, and return them."""
     tables = []
     for variable in variables:
         progress(f"computing statistics of {variable.name} ..")
@@ -148,7 +148,7 @@ def _survey(blocks: Blocks, size: int) -> _Survey:
 
 
 def _total(sums: Sequence[Floats], size: int) -> Floats:
-    """Return the sums of the blocks added up with one rounding."""
+    """Return the total of the sums of the blocks, correctly rounded."""
     return np.array([math.fsum(block[k] for block in sums) for k in range(size)])
 
 
@@ -191,12 +191,12 @@ def _percentiles(blocks: Blocks, survey: _Survey, shares: Floats) -> Floats:
 
 
 def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[np.int64]) -> Floats:
-    """Return the values of given ranks in each column, shape (r, columns); rank 0 is the smallest value.
+    """Return, in each column, the values with given ranks, shape (r, columns); rank 0 is the smallest value.
 
     Parameters
     ----------
     blocks : function
-        Returns the values in blocks, shape (rows, columns); NaN is no value.
+        Returns the values in blocks, shape (rows, columns); NaN marks a missing value.
     low, high : arrays, shape (columns,)
         Smallest and largest value of each column; NaN if the column has none.
     ranks : array, shape (r, columns)
@@ -217,9 +217,9 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 
 @dataclass
 class _Search:
-    """An interval of keys of one column, with the ranks to look for.
+    """An interval of keys (integers in the order of the values) of one column, with the ranks that are searched in it.
 
-    ``ranks`` holds, for each rank among the values in the interval, the ranks in the column.
+    ``ranks`` maps each rank among the values in the interval to the corresponding ranks in the whole column.
     """
 
     column: int
@@ -230,7 +230,10 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read the values once; store the values of ranks whose interval is small, and return narrower intervals."""
+    """Read all values of a column once, to advance all searches for values of given ranks.
+
+    A search with few values in its interval is finished; for each other search, return searches in narrower intervals.
+    """
     open_searches = []
     for search in searches:
         if search.first == search.last:
@@ -268,7 +271,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Return the intervals of counted values that contain the ranks of a search."""
+    """Split the interval of a search by the counts of values, and return the parts that contain its ranks."""
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
     for rank, own in search.ranks.items():

@@ -1,4 +1,4 @@
-"""Sweeps: many motions of one scene, whose initial states and constants vary by a design, into a file or memory."""
+"""The function ``sweep``: propagates many motions of one scene with varied values into a file or into memory."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ LARGEST_IN_MEMORY = 4_000_000_000  # bytes of results without a file
 
 
 def _silent(text: str) -> None:
-    """Show no progress."""
+    """Ignore a message about progress."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +55,9 @@ class Sweep:
     count : int
         Number of trajectories.
     stopped, impossible : int
-        Number of trajectories that stopped early, and of those whose values no body or motion can have.
+        Number of trajectories that stopped early, and number of trajectories whose values no body or motion can have.
     reasons : list of (int, str)
-        The first trajectories that are not complete, each with the reason.
+        The first trajectories that stopped or were impossible: their indices and the reasons.
 
     Examples
     --------
@@ -75,7 +75,7 @@ class Sweep:
     _store: Any
 
     def array(self, name: str) -> NDArray[Any]:
-        """Return one array of the results, which has all its values in memory.
+        """Return one array of the results; all its values are loaded into memory.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class Sweep:
         Returns
         -------
         array
-            Outputs at all times have the shape (trajectories, times), the others (trajectories,); statistics at all
+            Outputs at all times have the shape (trajectories, times), other outputs (trajectories,). Statistics at all
             times have the times as last axis.
 
         Raises
@@ -140,10 +140,10 @@ def sweep(
     progress: Callable[[int, int], None] | None = None,
     note: Callable[[str], None] = _silent,
 ) -> Sweep:
-    """Propagate many motions of a scene by a design of varied values; write chosen outputs of each.
+    """Propagate many motions of a scene with varied values, and store chosen outputs of each motion.
 
-    The results have the same bits for any number of workers and any chunks. With a file, a sweep that was stopped goes
-    on when it is called again with the same arguments.
+    The results have the same bits for any number of workers and any size of chunks. If a sweep into a file was
+    interrupted, the same call continues it.
 
     Parameters
     ----------
@@ -154,7 +154,8 @@ def sweep(
         ``weight`` or ``I_xx``, as for :func:`symrot.propagate_ensemble`; a number in the scene file, such as
         ``body.mass`` or ``body.part[0].radius``. Laws: ``"normal(mean, deviation)"``, ``"uniform(low, high)"``,
         ``"loguniform(low, high)"``; grids ``"linspace(first, last, count)"``, ``"geomspace(first, last, count)"``,
-        ``"values(a, b, ...)"`` or a sequence of numbers. Several grids form a product, with all draws at each point.
+        ``"values(a, b, ...)"`` or a sequence of numbers. Several grids form a product; every point of the product is
+        combined with every draw of the distributions.
     attitudes : str
         ``"uniform"`` draws initial attitudes uniformly from all rotations; default: the attitude in the scene.
     sampling : str
@@ -316,7 +317,7 @@ def _job(
 
 
 def _content(scene: Scene) -> Content | None:
-    """Return the content from which a scene was read; None if its parts were replaced later."""
+    """Return the content of the file or dict from which a scene was read; None if the scene was changed later."""
     try:
         return scene.to_dict()
     except InputError:  # only values of its constants can vary

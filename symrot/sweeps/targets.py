@@ -1,4 +1,4 @@
-"""Targets: the places in a scene to which the values of a sweep go.
+"""Targets: the quantities of a scene that a sweep can vary.
 
 A target is a component of the initial angular velocity, ``omega_1``; a constant of the equations of motion, ``weight``
 or ``I_xx``; or a number in the scene file, ``body.mass`` or ``body.part[0].radius``. Constants are passed to the
@@ -28,7 +28,7 @@ Content = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Target:
-    """A place in a scene to which values go: its name, its unit, and its path if it is a number in the scene file."""
+    """A quantity that a sweep varies: its name, its unit, and its path if it is a number in the scene file."""
 
     name: str
     unit: str
@@ -36,7 +36,7 @@ class Target:
 
 
 def read_target(name: str, scene: Scene, content: Content | None) -> Target:
-    """Return the target with a name.
+    """Return the target with the given name.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
     Raises
     ------
     InputError
-        If the scene has no such place, or if the value there cannot vary.
+        If the scene has no quantity with this name, or if this quantity cannot vary.
     """
     if name in OMEGA:
         return Target(name, "rad/s")
@@ -75,7 +75,7 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
 
 
 def _path(name: str) -> Path:
-    """Return the path that a name such as ``body.part[0].radius`` describes, or () if nothing at it can vary."""
+    """Return the path for a name such as ``body.part[0].radius``, or () if no number that can vary has this path."""
     path = path_of(name)
     return path if len(path) > 1 and path[0] in VARIED_TABLES else ()
 
@@ -86,7 +86,9 @@ def _is_fixed(name: str) -> bool:
 
 def _require_variable(field: str, name: str) -> None:
     if field in FIXED:
-        raise InputError(f"{name}: expected a value that can vary, but {field} is the same for all; {FIXED[field]}")
+        raise InputError(
+            f"{name}: expected a value that can vary, but {field} is the same for all trajectories; {FIXED[field]}"
+        )
 
 
 def _unit_of_constant(scene: Scene, name: str) -> str:

@@ -1,7 +1,7 @@
 """Results of a sweep as a Zarr group, which xarray opens: one array for each input and output, with its units.
 
-A chunk of the sweep is one chunk of each array. Zarr writes each chunk to a temporary file and renames it, and the
-status of a chunk is written last. A chunk whose status is there is thus complete, whenever a process was stopped.
+Each array has the same chunks as the sweep. Zarr writes each chunk to a temporary file and renames it, and the status
+of a chunk is written last. So a chunk with a status is complete, even if a process was killed.
 """
 
 import json
@@ -38,7 +38,7 @@ IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finis
 
 
 class ZarrStore:
-    """The store of a sweep in the folder at ``path``; the folder of the same sweep is continued.
+    """The store of a sweep in the folder at ``path``. If the folder has results of the same sweep, they are continued.
 
     Raises
     ------
@@ -58,7 +58,10 @@ class ZarrStore:
         self._open: dict[str, Any] = {}
 
     def _continued(self, zarr: Any, header: Header) -> Header:
-        """Return the header with the rows of the chunks that are there; refuse the results of another sweep."""
+        """Return the header for continuing a sweep, with the size of its stored chunks.
+
+        Raise InputError for another sweep.
+        """
         from dataclasses import replace
 
         expectation = f"{self.path}: expected a new name or the results of this sweep"
@@ -72,7 +75,7 @@ class ZarrStore:
         return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:
-        """Write all arrays without values into a new folder, which is renamed when it is complete."""
+        """Create all arrays, still without values, in a new folder that gets its final name when it is complete."""
         part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
         shutil.rmtree(part, ignore_errors=True)
         try:
@@ -102,12 +105,12 @@ class ZarrStore:
         return self._open[name]
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of the chunks that are missing."""
+        """Return the ranges of trajectories, one per chunk, that are still missing."""
         status = self._array(STATUS)
         return [each for each in self.header.ranges() if status[each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
-        """Add a chunk; a chunk that is there already is replaced by the same values."""
+        """Store a chunk; a chunk that is stored already is replaced by the same values."""
         rows = slice(chunk.start, chunk.stop)
         for name, values in arrays_of(chunk, self.header.inputs).items():
             self._array(name)[rows] = values
@@ -126,7 +129,7 @@ class ZarrStore:
         return None if name in names or name not in self._group else np.asarray(self._group[name][...])
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are there."""
+        """Return whether the values of an array are stored."""
         return name in self._group
 
     @property
@@ -136,11 +139,17 @@ class ZarrStore:
 
     @property
     def alone(self) -> str:
-        """The description of the statistics that replaced the values; empty if the values are there."""
+        """The description of the statistics if they replaced the values of the outputs.
+
+        It is empty if the values are stored.
+        """
         return str(self._group.attrs.get(REMOVED, ""))
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Add the statistics; a description of them as ``alone`` removes the values of the outputs afterwards."""
+        """Store the statistics.
+
+        If ``alone`` (their description) is not empty, remove the values of the outputs afterwards.
+        """
         for table in tables:
             _add(self._group, table)
         self._group.attrs[FINISHED] = True
@@ -162,7 +171,7 @@ class ZarrStore:
 
 
 def _fast(zarr: Any) -> Any:
-    """Return the fastest compressor: random digits do not compress, equal values do."""
+    """Return the fastest compressor: stronger ones gain little, since the digits of results are nearly random."""
     return zarr.codecs.ZstdCodec(level=1)
 
 

@@ -1,4 +1,4 @@
-"""Claims of four documents on rigid-body rotation, as data in one TOML file per document, and their errata.
+"""Claims of four documents on rigid-body rotation, as data in one TOML file per document, and the errors found in them.
 
 For each claim the data give its place, its printed text, and the formula as symrot reads it. They contain no verdicts;
 :mod:`symrot.checker.textbook` computes these. The file ``errata.toml`` groups the claims that show the same error, and
@@ -34,7 +34,7 @@ LINE_KINDS = {
 
 
 class Document(NamedTuple):
-    """A document: name, kind, a note on text lost in extraction, the file of its claims, and the claims as data."""
+    """A document: name, title, kind, the kinds of characters that its text lost, and its claims (file and data)."""
 
     name: str
     title: str
@@ -45,11 +45,11 @@ class Document(NamedTuple):
 
 
 class PrintedFormula(NamedTuple):
-    """How the printed formula of a claim is typeset.
+    """How a claim's printed formula and its correction are typeset.
 
-    ``template`` is LaTeX with holes ``@left@``, ``@right@`` or ``@name@`` for the parts of the claim, ``corrected`` the
-    template of the correction, ``letters`` the LaTeX of names, and ``proposal`` the corrected parts, if the search for
-    repairs does not find them.
+    ``template`` is LaTeX with holes ``@left@``, ``@right@`` or ``@name@`` for the parts of the claim, ``corrected``
+    is the same for the correction, and ``letters`` gives the LaTeX of names. ``proposal`` contains the corrected
+    parts, if the search for repairs does not find them.
     """
 
     claim: str
@@ -60,7 +60,7 @@ class PrintedFormula(NamedTuple):
 
 
 class Erratum(NamedTuple):
-    """An error: its name, the reason in words, and the formulas and words that show it, the clearest first."""
+    """An error in a document: its title, the reason in words, and the formulas that show it, the clearest first."""
 
     title: str
     why: str
@@ -68,7 +68,7 @@ class Erratum(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """A condition that a document does not state: the claim that holds under it, its formulas, and its words."""
+    """A condition that a document does not state: the claim that needs it, the condition as formulas, and in words."""
 
     claim: str
     hypotheses: tuple[str, ...]
@@ -76,9 +76,9 @@ class Condition(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line of a document with a relation sign that states no formula of its own.
+    """A line of a document with a relation sign that states no new formula.
 
-    ``kind`` is a key of :data:`LINE_KINDS`, ``claim`` the claim that states the formula, or an empty text.
+    ``kind`` is a key of :data:`LINE_KINDS`. ``claim`` is the claim that states the formula, or an empty text.
     """
 
     printed: str
@@ -104,7 +104,7 @@ def document(name: str) -> Document:
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors of all documents, in the order of the documents."""
+    """Return the errors in all documents, in the order of the documents."""
     return tuple(
         Erratum(entry["title"], entry["why"], tuple(map(_printed_formula, entry["formula"])))
         for entry in _content("errata")["error"]
@@ -112,14 +112,14 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def conditions() -> tuple[Condition, ...]:
-    """Return the conditions that documents do not state, and that the exact engine proves but does not find."""
+    """Return the conditions that documents do not state and that the exact engine proves, but cannot find by itself."""
     return tuple(
         Condition(entry["claim"], tuple(entry["given"]), entry["words"]) for entry in _content("errata")["condition"]
     )
 
 
 def lines(name: str) -> tuple[Line, ...]:
-    """Return the lines of a document that state no formula of their own; ``name`` is one of :data:`DOCUMENTS`."""
+    """Return the lines of a document that state no new formula; ``name`` is one of :data:`DOCUMENTS`."""
     return tuple(Line(*entry) for entry in _content("lines")[name])
 
 

@@ -1,1 +1,1 @@
-"""Pages that move: a scene as one offline HTML file, whose motion is computed in the browser."""
+"""Animated pages: one offline HTML file per scene, which computes the motion in the browser; and films."""

@@ -30,7 +30,7 @@ FLATTEST = 0.02  # least thickness of the box for a body without parts, relative
 
 
 class Patch(NamedTuple):
-    """A grid of points of a surface (``rows`` times ``columns``), a curve (one row) or separate points (no columns).
+    """Points of a surface (``rows`` times ``columns``), of a curve (one row), or separate points (no columns).
 
     Attributes
     ----------
@@ -39,9 +39,9 @@ class Patch(NamedTuple):
     rows, columns : int
         Size of the grid.
     is_hole : bool
-        Whether the part is subtracted from the body.
+        Whether the patch bounds a hole: a shape that is subtracted from the body.
     is_mesh : bool
-        Whether the patch is a mesh, no grid: each row is a triangle, given by its three corners.
+        Whether the patch is a mesh instead of a grid: each row holds the three corners of a triangle.
     """
 
     points: list[Point]
@@ -77,16 +77,16 @@ def patches(body: Body) -> list[Patch]:
 
 
 def how_drawn(body: Body) -> str:
-    """Return a sentence that a body is drawn as a box, if only its inertia is known; otherwise an empty text."""
+    """Return the sentence for the page that the body is drawn as a box; empty if the shape of the body is known."""
     if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
-        return "The body is drawn as a box with the proportions of its moments about the fixed point."
-    return "The body is drawn as the uniform box with its moments."
+        return "The body is drawn as a box whose proportions follow from its moments of inertia about the fixed point."
+    return "The body is drawn as the uniform box with the same moments of inertia."
 
 
 def _of_facets(body: Body) -> Patch:
-    """Return the triangles of a mesh as one patch."""
+    """Return the triangles of a body's mesh as one patch of its surface."""
     start = [float(value) for value in body.origin]
     points = [(x - start[0], y - start[1], z - start[2]) for facet in body.facets for x, y, z in facet]
     return Patch(points, len(body.facets), 3, is_mesh=True)
@@ -132,9 +132,9 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield the faces of a shape: the fixed coordinates with their values as text, and the free coordinates.
+    """Yield each face of a shape: the coordinate that is constant on it, with its value, and the other coordinates.
 
-    The two ends of a full rotation are the same points inside the body, so they are no faces.
+    An angle from 0 to 2 pi gives no faces, since its two ends are the same points inside the body.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:
@@ -161,7 +161,7 @@ def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mappi
 
 
 def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
-    """Return the values of a coordinate at which a surface is sampled: both ends, and more if the surface is curved."""
+    """Return the values of a coordinate for the grid of a surface: both ends, and values between them for an angle."""
     low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
     count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1
     return [low + (high - low) * k / count for k in range(count + 1)]
@@ -188,9 +188,9 @@ def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
 
 
 def _equivalent_box(body: Body) -> list[Patch]:
-    """Return the faces of the uniform box that has the moments of a body.
+    """Return the faces of the uniform box that has the same moments of inertia as a body.
 
-    Its size does not depend on the mass, which is unknown.
+    If the mass is unknown, only the proportions of the box are right, and its longest edge is 1.
     """
     central = _about_its_center(body)
     principal, mass, center = central or (body.principal, None, (0.0, 0.0, 0.0))

@@ -34,7 +34,7 @@ VIEW = {"elev": 22.0, "azim": -52.0}
 
 
 def require_encoder(path: Path) -> None:
-    """Raise InputError if a package that draws or encodes films is not installed."""
+    """Raise InputError if a package needed to write a film to this path is not installed."""
     if find_spec("matplotlib") is None:
         raise InputError(f"{path}: expected matplotlib, but it is not installed; pip install 'symrot[film]'")
     if path.suffix.lower() == ".mp4" and find_spec("imageio_ffmpeg") is None:
@@ -53,7 +53,7 @@ def write_film(
     path : Path
         ``.gif`` or ``.mp4``.
     progress : function
-        Called with the number of frames that are drawn and the number of all frames.
+        Called with the number of frames drawn so far and the number of all frames.
 
     Raises
     ------
@@ -159,7 +159,10 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
 
 
 def _polygons(patch: Patch) -> list[Floats]:
-    """Return the polygons of a patch, each of shape (4, 3), or (3, 3) in a mesh; none for curves and points."""
+    """Return the polygons of a patch of the body's surface: arrays of corners, shape (4, 3), or (3, 3) in a mesh.
+
+    A curve, separate points and the surface of a hole have none.
+    """
     if patch.is_mesh:
         return list(np.array(patch.points).reshape(-1, 3, 3))
     if patch.rows < 2 or patch.is_hole:
@@ -173,14 +176,14 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return the points of a curve as one list, or separate points as lists of one point each."""
+    """Return a patch that is a curve as one list of points; return separate points as lists of one point each."""
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness of a polygon.
+    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch.
 
-    The quarters of a round surface differ in brightness, so that its spin can be seen.
+    Neighbouring quarters of a round surface differ in brightness, so that its rotation can be seen.
     """
     if patch.is_mesh:
         x, y, _ = np.array(patch.points[3 * place : 3 * place + 3]).mean(axis=0)

@@ -49,7 +49,7 @@ MOMENTS = ("A", "B", "C")
 
 
 class Slider(NamedTuple):
-    """A constant or initial value that the reader of a page can change: its name, label, unit, value and range."""
+    """A constant or initial value that the reader of a page can change by a slider: name, label, unit, value, range."""
 
     name: str
     label: str
@@ -124,7 +124,7 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
 
 
 def with_attitude(scene: Scene) -> Scene:
-    """Return a scene whose output includes the attitude, which every picture needs."""
+    """Return the scene with the attitude added to its output, so that the motion can be drawn."""
     output = scene.output
     if "quaternion" in output.quantities:
         return scene
@@ -132,20 +132,23 @@ def with_attitude(scene: Scene) -> Scene:
 
 
 def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
-    """Return why the page plays samples of the motion instead of computing it; empty if it computes the motion."""
+    """Return the reason why a page plays a motion computed beforehand; empty if the page computes the motion."""
     if trajectory is not None:
         return "a torque without a formula acts, so symrot computed this motion beforehand"
     if scene.table is not None:
         return "a torque is given by samples, so symrot computed this motion beforehand"
     if switched(scene):
-        return "a torque jumps or bends, so symrot computed this motion beforehand"
+        return "a torque has jumps or kinks, so symrot computed this motion beforehand"
     if has_formulas(Plan(scene, general_structure(scene), ())):
-        return "a torque formula may have narrow features, so symrot computed this motion beforehand"
+        return "a torque formula may have short pulses, so symrot computed this motion beforehand"
     return ""
 
 
 def _free_structure(scene: Scene) -> Any:
-    """Return the structure of a scene with every constant free; a body in its principal axes keeps these axes."""
+    """Return the structure of a scene in which every constant may change.
+
+    If the axes of the body are principal axes, the structure has no products of inertia.
+    """
     structure = general_structure(scene)
     if scene.body.principal.given_axes:
         return replace(structure, inertia=PrincipalInertia("ABC"))
@@ -153,7 +156,10 @@ def _free_structure(scene: Scene) -> Any:
 
 
 def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
-    """Return the data that every page needs, by name; ``is_driven`` says whether a torque without formula acts."""
+    """Return the data about a scene that every page needs, by name.
+
+    ``is_driven`` says whether a torque without a formula acts.
+    """
     body = scene.body
     principal = body.principal
     axis = 2 if principal.symmetry_axis is None else principal.symmetry_axis
@@ -193,7 +199,7 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
 
 
 def _rest(value: Fraction) -> float:
-    """Return the difference of an exact number from its nearest double; both doubles together have 32 digits."""
+    """Return the rounding error of a number's nearest double: the page adds it to that double, for 32 digits in all."""
     return float(value - Fraction(float(value)))
 
 
@@ -216,7 +222,8 @@ def _packed(values: Floats) -> str:
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
     """Return a motion as evenly spaced samples of omega and quaternion, close enough to be drawn.
 
-    If the motion has too many rotations for a page, only its first part is returned, and ``played`` says so.
+    If the motion has too many rotations for a page, only its first part is returned; the text ``played`` says so.
+    ``reason`` is the reason why the page does not compute the motion.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
@@ -241,7 +248,7 @@ def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
 
 
 def _reference(times: Floats, states: Floats) -> dict[str, str]:
-    """Return times and states computed by symrot, with which the page compares its own results."""
+    """Return times and states computed by symrot as data for the page, which compares its own results with them."""
     return {"t": _packed(times), "y": _packed(states)}
 
 
@@ -343,7 +350,7 @@ def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
 
 
 def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
-    """Yield (name, field) for each constant of the torques that can be changed alone."""
+    """Yield (name, field of its torque) for each torque constant that may change while the others stay the same."""
     for torque in plan.structure.torques:
         fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}
         for name, pattern in getattr(torque, "fields", ()):

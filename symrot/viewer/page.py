@@ -29,7 +29,7 @@ def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
     scene : Scene
         The scene.
     trajectory : Trajectory, optional
-        A motion to play instead of the scene's own.
+        A motion to play; without it, the page computes the scene's own motion.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def _text(name: str) -> str:
 
 
 def _in_script(text: str) -> str:
-    """Return JSON text in which no title can end the HTML script element that contains the text."""
+    """Return JSON text with ``<`` escaped, so that a title in it cannot end the surrounding HTML script element."""
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 

@@ -33,13 +33,13 @@ def show(
     Parameters
     ----------
     motion : Scene, Trajectory, str or Path
-        A scene, the name of a shipped scene, the path of a scene file, or a trajectory. Of a trajectory, the page shows
-        its initial state and its span.
+        A scene, the name of a shipped scene, the path of a scene file, or a trajectory. A page made from a trajectory
+        starts with its initial state and covers its span.
     path : str or Path, optional
         The file to write: ``.html``, or ``.gif`` or ``.mp4`` for a film, which needs ``symrot[film]``. The default is a
         page with the name of the scene in the current folder.
     progress : function
-        Called with the number of frames of a film that are drawn, and the number of all frames.
+        Called for a film, with the number of frames drawn so far and the number of all frames.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def show(
 
     Notes
     -----
-    A motion with torques that jump, or that have no closed formula, is computed by symrot beforehand and played.
+    A motion under torques that jump or that have no formula is computed by symrot beforehand; the page plays it.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def in_frame(trajectory: Trajectory) -> str:
 
 
 def _state_at(scene: Scene, time: Fraction) -> Initial:
-    """Return the state of a scene's motion at a given time, s: the initial state of a page that starts then."""
+    """Return the state of a scene's motion at a given time, s, for a page that starts at this time."""
     state = propagator(with_attitude(scene))([float(time)])
     first, second, third = map(Fraction, state.omega[0].tolist())
     a, b, c, d = map(Fraction, state.quaternion[0].tolist())
@@ -91,9 +91,9 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
 
 
 def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
-    """Return the scene of a page, and the trajectory to play if the page cannot compute it, else None.
+    """Return the scene of a page, and the trajectory that the page has to play, or None if it computes the motion.
 
-    A page plays a trajectory if a torque without a formula acts.
+    A page has to play a trajectory if a torque without a formula acts.
     """
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))

@@ -32,7 +32,7 @@ def _texts() -> dict[str, str]:
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return a map from the table's key of each bound of a library kernel to the task that computes the bound."""
+    """Return the tasks that compute the bounds of all library kernels, each under the key of its bound in the table."""
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):

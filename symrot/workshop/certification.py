@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from symrot.certificates.step_certificate import is_step
 from symrot.errors import InputError
 from symrot.formula import exact_numbers
 from symrot.workshop import bounds as rounding
 from symrot.workshop import certify as certificates
+from symrot.workshop.steps import certify as steps
 
 __all__ = [
     "Audit",
@@ -46,8 +48,8 @@ class Certificate:
     laws : tuple of str
         The laws that are proven from the kernel's formulas.
     proofs : tuple of str
-        The kinds of proof that the certificate contains, among ``"laws"``, ``"Coq"``, ``"C text"``, ``"rounding"`` and
-        ``"object code"``.
+        The kinds of proof that the certificate contains, among ``"laws"``, ``"Coq"``, ``"C text"``, ``"rounding"``,
+        ``"object code"`` and, for a step, ``"truncation"``.
     data : mapping
         The whole certificate, as in the file NAME.cert.json.
     files : tuple of Path
@@ -72,10 +74,12 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether compared object code differs from the C text under flags that must keep its bits."""
+        """Whether object code differs from the C text although its compiler flags must preserve the bits of results."""
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:
+        if is_step(self.data):
+            return "\n".join(steps.lines(dict(self.data)))
         return "\n".join(certificates.lines(dict(self.data), self.objects_compared))
 
 
@@ -224,6 +228,8 @@ def certify(
     directory: str | Path | None = None,
     objects: bool = False,
     rounding: bool = True,
+    step: str | None = None,
+    order: int | None = None,
     progress: Progress = _silent,
 ) -> Certificate:
     """Prove that a kernel computes its formulas, and return the certificate.
@@ -242,6 +248,12 @@ def certify(
     rounding : bool
         Whether to compute bounds of rounding errors now; if not, the certificate of a library kernel contains the
         bounds that come with symrot.
+    step : str, optional
+        ``"rk4"``, ``"taylor"`` or ``"dop853"``: certify one time step of a scene instead of its rates, as
+        :func:`symrot.emit` prints it. With a ``box`` of the states and of ``dt``, rounding and truncation of one step
+        are bounded, except for ``"dop853"``.
+    order : int, optional
+        Order of the step ``"taylor"``, 1 to 16 (default 8).
     progress : callable
         Called with a line of text as each part of the work begins.
 
@@ -270,6 +282,13 @@ def certify(
     ('B dangles/dt is the given angular velocity',)
     """
     folder = None if directory is None else Path(directory)
+    if step is not None:
+        if objects or not rounding:
+            raise InputError("certify: expected a step without objects and rounding=False, which are for kernels")
+        data, files = steps.certify_step(str(kernel), step, order, _ranges(box), folder, progress)
+        return Certificate(data["kernel"], data["title"], (), steps.proofs(data), data, tuple(files))
+    if order is not None:
+        raise InputError(f"order: expected a step as well, such as step='taylor', got only the order {order}")
     data, files = certificates.certify(str(kernel), _ranges(box), folder, objects, rounding, progress)
     laws = tuple(law["law"] for law in data["laws"])
     return Certificate(data["kernel"], data["title"], laws, certificates.proofs(data), data, tuple(files), objects)

@@ -22,6 +22,7 @@ from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import kernel_names
 from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
 from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
+from symrot.workshop.steps.audit import audit_step, step_data
 from symrot.workshop.workers import workers
 
 __all__ = [
@@ -100,6 +101,8 @@ def audit_file(
         If a statement does not hold; the message names the first such statement.
     """
     progress(f"auditing {path.name} ..")
+    if (step := step_data(path)) is not None:
+        return _audit_step(path, step, object_file, rerun, coq, progress)
     try:
         data, report = audit(path, _proven_statement)
     except CertificateError as reason:
@@ -112,6 +115,16 @@ def audit_file(
     if coq:
         report += _coq(data, progress)
     return report
+
+
+def _audit_step(
+    path: Path, data: Data, object_file: Path | None, rerun: bool, coq: bool, progress: Callable[[str], object]
+) -> list[str]:
+    report = audit_step(path, data, rerun, progress)
+    if object_file is not None:
+        source = path.with_name(f"{data['kernel']}.c")
+        report += object_code.object_lines(source.read_text(encoding="utf-8"), object_file, source.name)
+    return [*report, "no theorem of Coq is about a step"] if coq else report
 
 
 def audit_files(
@@ -235,7 +248,7 @@ def certify_all(
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
     """Return the certificates of all kernels of the library and of shipped scenes, and the paths of the written files.
 
-     Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
+    Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
      are written or object code is compared.
 
     Parameters
@@ -286,7 +299,7 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether compared object code differs from the C text under flags that must preserve its bits."""
+    """Return whether object code differs from the C text although its compiler flags must preserve the bits."""
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
@@ -340,7 +353,7 @@ def lines(data: Data, compared: bool = True) -> list[str]:
             f"; the series of {s[0]} is truncated by less than {_short(s[3])} of its value" for s in function["series"]
         )
         count = sum(function["operations"].values())
-        rows.append(("C text", f"{name} and its batch are the formulas, {count} operations{series}"))
+        rows.append(("C text", f"{name} and its batch function compute the formulas in {count} operations{series}"))
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"

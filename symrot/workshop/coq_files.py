@@ -18,7 +18,7 @@ MISSING = "coqc is not on the path (Debian package coq)"
 def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) -> tuple[list[Path], CoqResult | None]:
     """Write all Coq files into a folder and check them with Coq; return the files that changed and Coq's result.
 
-     If Coq is not installed, the files are written, and None is returned in place of Coq's result.
+    If Coq is not installed, the files are written, and None is returned in place of Coq's result.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
     """
     prover = coqc()
     if demanded and prover is None:
-        raise CertificateError(f"--check: expected an installed Coq to check the theorems; {MISSING}")
+        raise CertificateError(f"--check: expected Coq, which checks the theorems, to be installed; {MISSING}")
     progress("printing theorems ..")
     texts = coq_texts()
     written = write_files(directory, texts)

@@ -75,7 +75,7 @@ def illustrated(page: Page) -> PrintedPage:
         if isinstance(item, Section):
             items += by_section.pop(item.title, ())
     if by_section:
-        raise InputError(f"{page.name}: expected figures in sections of the page, got the sections {[*by_section]}")
+        raise InputError(f"{page.name}: expected figures in sections of the page, got figures in {[*by_section]}")
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
     lesson = taught(Page(**values | {"items": items}), top)
     return PrintedPage(**{each.name: getattr(lesson, each.name) for each in fields(Page)})
@@ -224,5 +224,5 @@ def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
 
 
 def _mark(path: Path) -> str:
-    """Return the words by which a file is known to have been printed by symrot."""
+    """Return words that symrot prints into every file of this kind, by which it recognises its own files."""
     return 'class="sf" role="img"' if path.suffix == ".svg" else f"printed by `symrot derive {path.stem}`; do not edit."

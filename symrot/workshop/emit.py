@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TARGETS", "Emitted", "emit", "explain", "kernel_names", "plan"]
 
-TARGETS = ("c", "numpy", "js")
+TARGETS = ("c", "numpy", "js", "jax")
 
 
 class _Texts(NamedTuple):
@@ -25,9 +25,10 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: its name, its text, and in C its header (empty for NumPy).
+    """An emitted kernel: its name, its text, and in C its header (empty for other targets).
 
-    In NumPy the function has the name of the kernel; in C its name is ``function``, with the prefix ``symrot_``.
+    In Python and JavaScript the function has the name of the kernel; in C its name is ``function``, with the prefix
+    ``symrot_``.
 
     ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The certificate of a
     library kernel contains the bounds of its rounding errors on its own box; the certificate of a scene's kernel
@@ -146,7 +147,8 @@ def emit(
         The name of a kernel (:func:`symrot.kernel_names`) or of a shipped scene, a scene, or the path of a scene file.
         The kernel of a scene computes its equations of motion ``dy/dt``.
     target : str
-        ``"c"`` (C99, valid C++), ``"numpy"`` or ``"js"`` (a JavaScript module).
+        ``"c"`` (C99, valid C++), ``"numpy"``, ``"js"`` (a JavaScript module) or ``"jax"`` (a pure function for
+        ``jax.jit``, ``jax.vmap`` and ``jax.grad``).
     bounds : mapping, optional
         Bounds of the rounding errors of a scene's kernel on a box of your choice, from
         :func:`symrot.workshop.bounds.section`. They are stated in the head comment of its C text and in its

@@ -25,6 +25,7 @@ from symrot.workshop.step_text import step_text
 from symrot.workshop.workers import workers
 
 __all__ = [
+    "build_files",
     "certificate_files",
     "chosen_text",
     "kernel_files",
@@ -35,7 +36,7 @@ __all__ = [
     "write_files",
 ]
 
-SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",), "js": (".js",)}
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in", ".cmake"), "numpy": (".py",), "js": (".js",), "jax": (".py",)}
 RECHECK = "recheck.py"  # the program that checks certificates without symrot
 SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernels are directly in the target's folder
 

@@ -1,4 +1,4 @@
-"""The texts of one kernel of the library or of one scene: C, NumPy, JavaScript and certificate, from one derivation.
+"""The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
 Each text is printed at its first use and at most once; only the comment at the head of a scene's C file depends on the
 rounding bounds that it states.
@@ -20,6 +20,7 @@ from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.lowering.lower import Lowered
 from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, c_functions, c_header, with_head
+from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.math_header import math_header
 from symrot.codegen.printing.numpy_source import numpy_source
@@ -42,14 +43,14 @@ from symrot.scene.scene import Scene, SceneSource, load_scene
 
 __all__ = ["SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
 
-SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js"}
-"""The ending of a source file in each language that kernels are printed in."""
+SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js", "jax": "_jax.py"}
+"""The ending of a source file in each language that kernels are printed in; NumPy and JAX are both Python."""
 
 Bounds = Mapping[str, Any]
 
 
 class KernelText(ABC):
-    """The texts of one kernel; an argument ``bounds`` is the one of :func:`symrot.emit`."""
+    """The texts of one kernel; :func:`symrot.emit` explains the argument ``bounds`` of its methods."""
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
@@ -68,12 +69,17 @@ class KernelText(ABC):
     def js(self) -> str:
         """The JavaScript source, a module."""
 
+    @property
+    @abstractmethod
+    def jax(self) -> str:
+        """The JAX source, a Python module."""
+
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts, as the object from which its certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the section ``rounding`` of the certificate, or None."""
+        """Return the section ``rounding`` of the certificate, which states bounds of rounding errors, or None."""
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
@@ -88,10 +94,10 @@ class KernelText(ABC):
         return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
 
     def source(self, target: str, bounds: Bounds | None = None) -> str:
-        """Return the source in one of the languages "c", "numpy" and "js"."""
+        """Return the source in one of the languages "c", "numpy", "js" and "jax"."""
         if target == "c":
             return self.c(bounds)[0]
-        return self.numpy if target == "numpy" else self.js
+        return {"numpy": lambda: self.numpy, "js": lambda: self.js, "jax": lambda: self.jax}[target]()
 
     def files(self, target: str, bounds: Bounds | None = None) -> dict[str, str]:
         """Return the files in one of the languages as a mapping from name to text; in C the header comes first."""
@@ -111,7 +117,7 @@ class KernelText(ABC):
 class LibraryText(KernelText):
     """The texts of a kernel of the library, which has its own box and its own bounds."""
 
-    folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js"}
+    folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
     def __init__(self, name: str) -> None:
         self.name, self._definition = name, definition(name)
@@ -148,6 +154,11 @@ class LibraryText(KernelText):
         """The JavaScript source."""
         return js_source(kernel_program(self.name), kernel_description(self._definition, "js"))
 
+    @cached_property
+    def jax(self) -> str:
+        """The JAX source."""
+        return jax_source(kernel_program(self.name), kernel_description(self._definition, "jax"))
+
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the kernel's own bounds, or None if it has none."""
         return self._section if isinstance(self._section, dict) else None
@@ -169,7 +180,9 @@ class SceneText(KernelText):
         States and constants by which the derivatives of the rates are computed too.
     """
 
-    folders: ClassVar[Mapping[str, str]] = {"numpy": "../../numpy/scenes", "js": "../../js/scenes"}
+    folders: ClassVar[Mapping[str, str]] = {
+        "numpy": "../../numpy/scenes", "js": "../../js/scenes", "jax": "../../jax/scenes",
+    }  # fmt: skip
 
     def __init__(self, scene: Scene, jacobian: Sequence[str] = ()) -> None:
         self.plan: Plan = make_plan(scene)
@@ -224,6 +237,11 @@ class SceneText(KernelText):
     def js(self) -> str:
         """The JavaScript source."""
         return js_source(self.program, self._description("js"))
+
+    @cached_property
+    def jax(self) -> str:
+        """The JAX source."""
+        return jax_source(self.program, self._description("jax"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts and equations."""

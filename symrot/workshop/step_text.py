@@ -1,4 +1,4 @@
-"""The texts of one time step of a scene: C with test vectors, NumPy, JavaScript and the certificate of its formula."""
+"""The texts of one time step of a scene: C with test vectors, NumPy, JavaScript, JAX, and a certificate."""
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
@@ -9,8 +9,10 @@ from symrot.certificates.certificate import KernelUnderTest
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
 from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c_header, c_name, with_head
+from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
 from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_program, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
@@ -59,7 +61,7 @@ def step_method(name: str, order: int | None = None) -> Method:
     if name not in STEPS:
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order with the step taylor only, got {order} with {name}")
+        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
         raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
     return STEPS[name](ORDER if order is None else order)
@@ -109,6 +111,7 @@ class StepText(KernelText):
             order = f" --order {self.method.order}"
         contract = (
             ("Method", self.method.formula),
+            *((("Parameters", "those of the scene are in {kernel}_parameters.h"),) if self._parameter_names else ()),
             ("Test", "{kernel}_test.c compares the functions with values of 40 digits"),
             ("Certificate", "{kernel}.cert.json: the text computes the formula of the method"),
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
@@ -136,8 +139,10 @@ class StepText(KernelText):
         )
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text: header, source, test."""
-        return super().c_files(bounds) | {f"{self.name}_test.c": self._test}
+        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
+        values = list(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
+        parameters = {parameters_file(self.name): parameters_header(self.name, values)} if values else {}
+        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
 
     @cached_property
     def numpy(self) -> str:
@@ -149,6 +154,11 @@ class StepText(KernelText):
         """The JavaScript source."""
         return js_source(self._program, self._description("js"))
 
+    @cached_property
+    def jax(self) -> str:
+        """The JAX source."""
+        return jax_source(self._program, self._description("jax"))
+
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Raise CertificateError: a step has a certificate of its own kind."""
         raise CertificateError(f"{self.name}: expected a kernel, got a step, whose certificate states its formula only")
@@ -158,8 +168,8 @@ class StepText(KernelText):
         """The step with its texts, as the object from which its certificate is made."""
         description = self._description("c")
         return StepUnderTest(
-            self.name, description.title, description.command, self._rates_program, self.method, self._program,
-            self.c_files(),
+            self.name, description.title, description.command, self._rates_program, self.method,
+            tuple(self.rates.inputs.parameters), self.c_files(),
         )  # fmt: skip
 
     def certificate(self, bounds: Bounds | None = None) -> str:
@@ -168,7 +178,7 @@ class StepText(KernelText):
 
     @cached_property
     def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
-        """States and sizes with the states after the step, computed with 40 digits from the formula of the method."""
+        """Test vectors: (state, step size, state after the step), computed with 40 digits from the method's formula."""
         import mpmath
 
         states = [name for name, *_ in self._rates_program.signature.argument("y").components]
@@ -198,14 +208,14 @@ class StepText(KernelText):
     def _test(self) -> str:
         """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
         count, parameters = len(self._vectors[0][0]), self.rates.inputs.parameters
+        included = [f'#include "{parameters_file(self.name)}"'] if parameters else []
         return "\n".join([
             f"/* Test of {self.name}: returns 0 if double and float agree with values of {DIGITS} digits. */",
-            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', "",
+            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', *included, "",
             f"#define STATES {count}", f"#define VECTORS {len(self._vectors)}", "",
             _table("vectors[VECTORS][2][STATES]", [[start, after] for start, _, after in self._vectors]),
             _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
-            *([_table(f"parameters[{len(parameters)}]", list(parameters))] if parameters else []), "",
-            *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
+            "", *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
             "int main(void)", "{", "    const int failed = check() || checkf();",
             f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with {DIGITS} digits");',
             "    return failed;", "}",
@@ -215,7 +225,7 @@ class StepText(KernelText):
         parameters = self.rates.inputs.parameters
         copies = [f"    {real.type} p[{len(parameters)}];",
                   f"    for (int i = 0; i < {len(parameters)}; ++i)",
-                  f"        p[i] = ({real.type})parameters[i];"] if parameters else []  # fmt: skip
+                  f"        p[i] = ({real.type})symrot_{self.name}_parameters[i];"] if parameters else []  # fmt: skip
         called = ", ".join(["0", "x", *(["p"] if parameters else []), f"({real.type})sizes[k]", "next"])
         return [
             f"static int check{real.suffix}(void)", "{", f"    {real.type} x[STATES], next[STATES];", *copies,

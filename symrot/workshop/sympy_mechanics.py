@@ -33,10 +33,10 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     Returns
     -------
     dict
-        Of a rigid body whose mass and inertia are numbers: the table ``body`` of a scene, about its centre of mass, in
+        For a rigid body whose mass and inertia are numbers: the table ``body`` of a scene, about its centre of mass, in
         the axes of ``value.frame``.
     ImmutableMatrix, shape (3, 3)
-        Of an inertia or a dyadic: the tensor, kg m^2, with negated products. Of a reference frame: ``dcm_sb``.
+        For an inertia or a dyadic: the tensor, kg m^2, with negated products. For a reference frame: ``dcm_sb``.
 
     Raises
     ------

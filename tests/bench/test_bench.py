@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import command, kernels, skip
+from symrot.bench import check, command, kernels, skip
 from symrot.bench.comparison import reference as reference_module
 from symrot.bench.comparison import suite
 from symrot.bench.comparison.contestants import CONTESTANTS, chosen
@@ -528,3 +528,9 @@ def test_a_kernel_without_a_textbook_formula_is_refused_in_a_sentence(name, caps
     assert caught.value.code == 2
     assert "expected a kernel with a textbook formula (quaternion_dcm, " in (said := capsys.readouterr().err)
     assert said.endswith(f"got {name!r}\n")
+
+
+def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():
+    assert [len({*check.claims(group)}) for group in check.LIMITS] == [40, 40, 20]
+    with pytest.raises(InputError, match=r"one of typical, naming, conditional; got 'typcal' .*did you mean 'typical'"):
+        check.claims("typcal")

@@ -168,8 +168,8 @@ def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monk
     (tmp_path / "mine.md").write_text("My own notes.\n")
     stale = dict(derivation_pages.check(tmp_path))
     assert {path.name for path in stale} == {"spherical_body.md", "planar_motion.md", "old.md"}
-    assert "\n-**1.** No tensor" in stale[tmp_path / "spherical_body.md"]
-    assert "\n+**1.** The tensor" in stale[tmp_path / "spherical_body.md"]
+    assert "\n-**1.** No inertia tensor" in stale[tmp_path / "spherical_body.md"]
+    assert "\n+**1.** The inertia tensor" in stale[tmp_path / "spherical_body.md"]
     assert {path.name for path in derivation_pages.derive_all(tmp_path)} == {path.name for path in stale}
     assert (
         derivation_pages.check(tmp_path) == []

@@ -17,7 +17,9 @@ SIGNS = {
     "k*m > 0": [(k / m, ">= 0"), (m / k, ">= 0"), (k, "!= 0"), (m, "!= 0")],
     "-1 < x < 1": [((1 + x) / (1 - x), "> 0"), (1 - x, "!= 0")],
     "x >= 1": [(x + 1, ">= 0"), (x - 1, ">= 0"), (x**2 - 1, ">= 0")],
-    "abs(x) >= 1": [(x**2 - 1, ">= 0")],
+    "abs(x) >= 1": [(x**2 - 1, ">= 0"), (x, "!= 0")],
+    "x >= 3": [(x**2 - 9, ">= 0"), (x + sqrt(x**2 - 9), "> 0")],
+    "a != 0": [(a * (a * sqrt(a**2 + 1) + Abs(a)), "> 0")],
     "-sqrt(2) <= x <= sqrt(2)": [(2 - x**2, ">= 0")],
     "sin(x) >= 0": [(sin(x / 2) * cos(x / 2), ">= 0")],
     "cos(theta) > 0 and a != 0": [(a**2 * cos(theta), "> 0")],
@@ -50,6 +52,7 @@ def test_conditions_are_written_as_a_book_writes_them(text, signs):
     ("sqrt(φ^2) = φ", "φ >= 0"), ("atan2(sin(b), sqrt(cos(b)**2)) == b", "-pi/2 <= b <= pi/2"),
     ("atan2(abs(sin(b)), cos(b)) == b", "0 <= b <= pi"), ("√(x²) = x; √(y²) = y", "x >= 0 and y >= 0"),
     ("sin(x/2) = ±√((1 - cos x)/2)", "sin(x/2) <= 0 for the lower sign"),
+    ("3*asin(x) == asin(3*x - 4*x**3)", "-1/2 <= x <= 1/2"), ("3*acos(x) == acos(4*x**3 - 3*x)", "1/2 <= x <= 1"),
 ])  # fmt: skip
 def test_a_conditional_claim_states_its_range_in_its_own_notation(claim, condition):
     verdict = symrot.check(claim, repair=False)

@@ -1,6 +1,7 @@
 """Kernels in a user's program: C99 and C++17 without warnings, vectorised batches, sine and cosine within 1 ulp."""
 
 import ctypes
+import os
 import shutil
 import struct
 import subprocess
@@ -194,7 +195,59 @@ def test_fast_math_is_refused(tmp_path):
     assert "without -ffast-math" in refused.value.stderr
 
 
+needs_cmake = pytest.mark.skipif(not shutil.which("cmake"), reason="needs CMake")
+
+
+def project(folder, components, linked):
+    """Write a CMake project that takes kernels by name, and return the command that configures it."""
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.13)\nproject(firmware C)\n"
+        f"find_package(symrot 0.2 REQUIRED COMPONENTS {components} PATHS {KERNELS} NO_DEFAULT_PATH)\n"
+        f"add_executable(firmware {EXAMPLE})\ntarget_link_libraries(firmware PRIVATE {linked})\n"
+    )
+    return ["cmake", "-S", folder, "-B", folder / "build"]
+
+
+@needs_cc
+@needs_cmake
+def test_cmake_compiles_the_kernels_that_are_linked_and_no_others(tmp_path):
+    linked = " ".join(f"symrot::{name}" for name in USED)
+    compiled(*project(tmp_path / "firmware", " ".join((*USED, "euler_zxz_dcm")), linked))
+    compiled("cmake", "--build", tmp_path / "firmware" / "build")
+    assert compiled(tmp_path / "firmware" / "build" / "firmware").stdout == "kernels agree\n"
+    objects = {path.name for path in (tmp_path / "firmware" / "build").rglob("*.o")}
+    assert objects == {"program.c.o", *(f"{name}.c.o" for name in USED)}
+
+
+@needs_cc
+@needs_cmake
+def test_a_component_that_is_no_kernel_is_refused_in_a_sentence(tmp_path):
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        compiled(*project(tmp_path / "firmware", "heavy_topp", "symrot::kernels"))
+    assert "expected a kernel with a file heavy_topp.c" in " ".join(refused.value.stderr.split())
+
+
+@needs_cc
+@needs_cmake
+@pytest.mark.skipif(not shutil.which("pkg-config"), reason="needs pkg-config")
+def test_pkg_config_knows_installed_kernels_by_name(tmp_path):
+    """Three kernels are built and installed; a program takes them by pkg-config."""
+    compiled(
+        "cmake", "-S", KERNELS, "-B", tmp_path / "build", f"-DSYMROT_KERNELS={';'.join(USED)}",
+        f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}",
+    )  # fmt: skip
+    compiled("cmake", "--build", tmp_path / "build", "--target", "install")
+    assert len([*(tmp_path / "build").rglob("*.c.o")]) == len(USED)
+    search = {"PKG_CONFIG_PATH": str(tmp_path / "prefix" / "lib" / "pkgconfig")}
+    names = [f"symrot-{name}" for name in USED]
+    options = subprocess.run(["pkg-config", "--cflags", "--libs", *names], env=os.environ | search, check=True,
+                             capture_output=True, text=True).stdout  # fmt: skip
+    compiled(COMPILERS[0], EXAMPLE, *options.split(), "-o", tmp_path / "program")
+    assert compiled(tmp_path / "program").stdout == "kernels agree\n"
+
+
 def test_build_files_are_printed():
     for name, text in build_files().items():
         assert (KERNELS / name).read_text(encoding="utf-8") == text
-    assert all(flag in build_files()["CMakeLists.txt"] for flag in FLAGS)
+    assert all(flag in build_files()["symrotConfig.cmake"] for flag in FLAGS)

@@ -70,9 +70,9 @@ def test_a_number_without_a_step_or_a_symbol_without_a_value_is_refused():
     with pytest.raises(InputError, match="whose claim begins with 'No such'"):
         value_of(page, Number("Energy:", "T", "No such", "J"), "t_handle")
     with pytest.raises(InputError, match="for dphi, dpsi, dtheta"):
-        value_of(page, Number("Energy:", "T", "Two equal moments", "J"), "heavy_top_loops")
+        value_of(page, Number("Energy:", "T", "With two equal moments", "J"), "heavy_top_loops")
     with pytest.raises(InputError, match="an entry of a matrix"):
-        value_of(page, Number("Momentum:", "L", "Its gradient", "kg m^2/s"), "t_handle")
+        value_of(page, Number("Momentum:", "L", "The gradient", "kg m^2/s"), "t_handle")
 
 
 def number(name, place=0):

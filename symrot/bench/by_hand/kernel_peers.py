@@ -1,7 +1,8 @@
-"""Kernels from the same textbook formulas, made by other tools (SymPy, SymForce, CasADi, heyoka) or by hand.
+"""Kernels for comparison, generated from textbook formulas by SymPy, SymForce, CasADi and heyoka, or written by hand.
 
-Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. C code is
-compiled with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
+Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. It
+differentiates them itself, if the kernel has derivatives. C code is compiled with the flags of symrot's kernels. A tool
+that is not installed is skipped, and the report names it.
 """
 
 import re
@@ -26,6 +27,7 @@ from symrot.errors import InputError
 from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node, children
 from symrot.kernels.dynamics import TENSOR
+from symrot.kernels.jacobian import BY
 from symrot.kinematics.euler import rate_jacobian
 from symrot.kinematics.quaternion import quaternion_rates, quaternion_to_dcm
 
@@ -35,6 +37,7 @@ __all__ = [
     "by_hand",
     "casadi_function",
     "counted",
+    "derivatives_of",
     "input_names",
     "textbook",
     "textbook_program",
@@ -73,17 +76,32 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 """The kernels that other tools can produce too: name -> function that returns the formulas of textbooks."""
 
 
+def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
+    """Return the name of the kernel that a kernel with derivatives extends, and its derivatives as (output, input)."""
+    entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
+    return name.split(BY)[0], [(output, variable) for output, variable in entries]
+
+
 def textbook(name: str) -> list[sympy.Expr]:
-    """Return the textbook formulas of a kernel, in the order of its outputs.
+    """Return the textbook formulas of a kernel, in the order of its outputs; derivatives follow the values.
 
     Raises
     ------
     InputError
         If the kernel is not in :data:`TEXTBOOK`.
     """
-    if name not in TEXTBOOK:
+    base, *variables = name.split(BY)
+    if base not in TEXTBOOK:
         raise InputError(f"expected a kernel with a textbook formula ({', '.join(TEXTBOOK)}), got {name!r}")
-    return TEXTBOOK[name]()
+    values = TEXTBOOK[base]()
+    if not variables:
+        return values
+    formulas = dict(zip(_outputs(kernel_program(base).signature), values, strict=True))
+    symbol = {str(each): each for value in values for each in value.free_symbols}
+    _, entries = derivatives_of(name)
+    return values + [
+        formulas[output].diff(symbol.get(variable, sympy.Symbol(variable))) for output, variable in entries
+    ]
 
 
 def input_names(name: str) -> list[str]:
@@ -102,7 +120,7 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return C text that computes common terms first and then the results, without further simplification."""
+    """Return a program that computes the common terms first and then the results, without further simplification."""
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
@@ -127,9 +145,11 @@ def _sympy(name: str) -> str:
 
 def _symforce(name: str) -> str:
     sf: Any = import_module("symforce.symbolic")
-    common, results = sf.cse(
-        [sf.S(str(entry)) for entry in textbook(name)], symbols=(sf.Symbol(f"common{i}") for i in range(1000))
-    )
+    base, entries = derivatives_of(name)
+    values = [sf.S(str(entry)) for entry in textbook(base)]
+    formulas = dict(zip(_outputs(kernel_program(base).signature), values, strict=True))
+    values += [formulas[output].diff(sf.Symbol(variable)) for output, variable in entries]
+    common, results = sf.cse(values, symbols=(sf.Symbol(f"common{i}") for i in range(1000)))
 
     def plain(value: object) -> sympy.Expr:
         return sympy.sympify(str(value), locals=_REAL)
@@ -164,18 +184,47 @@ def counted(text: str, name: str) -> Counter[str]:
     return counts
 
 
-def casadi_function(name: str) -> tuple[Any, Counter[str]]:
+def casadi_function(name: str, program: Callable[[str], Program] = textbook_program) -> tuple[Any, Counter[str]]:
     """Return CasADi's function of one vector for a kernel, and its number of operations by kind.
 
-    The components of the vector are all inputs of the kernel. Common subexpressions are computed once.
+    The components of the vector are all inputs of the kernel. CasADi differentiates forward, backward and by its own
+    choice; the way with the fewest operations counts. Common subexpressions are computed once.
+
+    Parameters
+    ----------
+    name : str
+        The kernel.
+    program : callable
+        Returns the formulas of the kernel without derivatives: those of textbooks, or symrot's own program.
     """
     import casadi
 
     x = casadi.SX.sym("x", len(input_names(name)))
     values = {each: x[i] for i, each in enumerate(input_names(name))}
     functions = {each: getattr(casadi, each) for each in ("sin", "cos", "tan", "sqrt")}
-    outputs = casadi.cse(casadi.vertcat(*textbook_program(name).evaluate(values, functions, float).values()))
-    function = casadi.Function("peer", [x], [outputs])
+    base, entries = derivatives_of(name)
+    formulas = program(base).evaluate(values, functions, float)
+    outputs, rows, variables = casadi.vertcat(*formulas.values()), list(formulas), input_names(name)
+    ways = [casadi.jacobian(outputs, x)]
+    if entries:
+        ways += [
+            casadi.horzcat(*(casadi.jtimes(outputs, x, one)
+                             for one in casadi.horzsplit(casadi.DM.eye(len(variables))))),
+            casadi.vertcat(*(casadi.jtimes(outputs, x, one, True).T
+                             for one in casadi.horzsplit(casadi.DM.eye(len(rows))))),
+        ]  # fmt: skip
+    made = [
+        _counted_casadi(x, casadi.vertcat(outputs, *(slopes[rows.index(o), variables.index(v)] for o, v in entries)))
+        for slopes in ways
+    ]
+    return min(made, key=lambda each: each[1].total())
+
+
+def _counted_casadi(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
+    """Return a function of CasADi in which common subexpressions are computed once, and its operations by kind."""
+    import casadi
+
+    function = casadi.Function("peer", [x], [casadi.densify(casadi.cse(outputs))])
     kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
              "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
     by_number = {getattr(casadi, kind): operation for kind, operation in kinds.items()}

@@ -1,4 +1,4 @@
-"""Contestants of a work-precision study: symrot's methods, SciPy's methods, and heyoka in each of its settings.
+"""Contestants of a work-precision study: symrot's methods, SciPy's methods, and heyoka with several settings.
 
 For one tolerance, a contestant prepares a function that computes the motion from its start to a given time and returns
 the states at that time and the number of steps. Work that a user does once (deriving, compiling) is part of the
@@ -61,7 +61,10 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the timed function of the closed form; every call computes its constants from the initial state."""
+    """Return the function to be timed for the closed form.
+
+    Each call also computes the constants from the initial state.
+    """
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
 
@@ -78,7 +81,7 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return a function that prepares a propagator and returns the timed function, which calls the propagator."""
+    """Return the function ``prepare`` of a symrot method, which makes a propagator and returns the calling function."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
         propagate = propagator(problem.scene, method, tolerance)
@@ -93,7 +96,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the integrated states at the end of a trajectory; for a closed form, the body's state at the end."""
+    """Return the last integrated states of a trajectory, or, if it has a closed form, the last state of the body."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]

@@ -1,4 +1,4 @@
-"""Reference motions, computed to 40 digits by Taylor series in mpmath; of free bodies, over any number of periods.
+"""Reference motions, computed to 40 digits by Taylor series in mpmath; for free bodies, over any number of periods.
 
 The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
 q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
@@ -39,7 +39,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(mpmath, name) for name
 
 
 def as_mpf(value: Any) -> Any:
-    """Return a Fraction or a double as a number of mpmath with the digits in force."""
+    """Return a Fraction or a double as a number of mpmath, with mpmath's current number of digits."""
     return mpmath.mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpmath.mpf(value)
 
 
@@ -50,7 +50,7 @@ def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
 
 
 def exact_start(plan: Plan) -> list[Fraction]:
-    """Return the initial values of the integrated states, as the scene states them."""
+    """Return the exact initial values of the integrated states, from the scene."""
     start = plan.scene.initial
     values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
     values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
@@ -119,7 +119,7 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
-        """Return the states at a time that is not before the start; to be called with 40 digits in force.
+        """Return the states at a time that is not before the start; mpmath must be set to 40 digits.
 
         ``on_step`` is called after each step with the time reached; an exception that it raises ends the computation.
         """
@@ -163,7 +163,10 @@ class ExactPath:
                         root = self._newton(t)
                         if root is not None and root > self.t0:
                             return root - self.t0
-        raise InputError("expected a free body off its separatrix, got a body whose angular velocity does not return")
+        raise InputError(
+            "expected a free body that is not on its separatrix, got a body whose angular velocity does "
+            "not return to its start"
+        )
 
     def _newton(self, t: Any) -> Any:
         """Return the time near t at which omega has its initial value, or None if Newton's method fails."""

@@ -27,7 +27,7 @@ REST = 1e-3
 
 
 class State(NamedTuple):
-    """The state of a body: angular velocity (3,), body axes, rad/s; attitude (4,), or None if it is not computed."""
+    """The state of a body: angular velocity (3,), body axes, rad/s, and quaternion (4,), or None if not computed."""
 
     omega: Floats
     quaternion: Floats | None
@@ -36,7 +36,7 @@ class State(NamedTuple):
 class Problem:
     """A scene with its kernel and the numbers of its parameters, for a comparison of methods.
 
-    ``plan`` may differ from the scene's own plan, for example the most general one.
+    ``plan`` may differ from the scene's own plan; for example, it may be the most general plan.
     """
 
     def __init__(self, scene: Scene, plan: Plan | None = None) -> None:

@@ -1,7 +1,7 @@
 """Processor times of several runs that alternate, so that all run under the same conditions.
 
 All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of seconds is
-timed in fewer rounds. The result is the median of the rounds; the least time is recorded too.
+timed in fewer rounds. The result is the median over the rounds; the least time is recorded too.
 """
 
 import gc
@@ -62,7 +62,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the total seconds that all rounds will take."""
+    """Return an estimate of the total time, s, of all rounds."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 

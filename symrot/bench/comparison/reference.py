@@ -77,7 +77,7 @@ CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|a
 
 
 class Reference(NamedTuple):
-    """Reference states of a motion, the name of the computation, and its differences from other computations."""
+    """Reference states of a motion, the method that computed them, and their differences from other methods."""
 
     states: tuple[State, ...]
     name: str
@@ -87,7 +87,7 @@ class Reference(NamedTuple):
 
     @property
     def doubt(self) -> float:
-        """The smallest difference from another reference, below which errors are meaningless.
+        """The smallest difference from another reference; errors of methods below it are meaningless.
 
         It is nan if there is no other reference.
         """
@@ -107,7 +107,7 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the reference states of a scene's motion, and how much other references differ from them.
+    """Compute reference states of a scene's motion and compare them with other references.
 
     Raises
     ------
@@ -127,7 +127,9 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
         except _Unavailable as reason:
             skipped.append(f"{name}: {reason}")
     if not paths:
-        raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
+        raise SymrotError(
+            f"{problem.scene.name}: expected a motion for which a reference can be computed; {'; '.join(skipped)}"
+        )
     (name, states), *more = paths
     others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
     result = Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
@@ -182,7 +184,7 @@ def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the size to which the error of each state is relative: the initial |omega|, or 1 for the attitude."""
+    """Return the scale by which the error of each state is divided: the initial |omega|, or 1 for the attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
@@ -223,7 +225,7 @@ def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the reference states by fixed steps in long double, halved until the result no longer changes."""
+    """Return the reference states by fixed steps in long double, which are halved until the result stops changing."""
     if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:

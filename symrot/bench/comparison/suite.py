@@ -46,7 +46,7 @@ def motions() -> dict[str, tuple[str, Scene]]:
 
 
 class _Checkpoint:
-    """The finished studies of an interrupted run, in a file that only a run with equal settings continues."""
+    """The finished studies of an interrupted run, stored in a file; only a run with the same settings uses them."""
 
     def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
@@ -140,9 +140,9 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program, the median and the smallest ratio of its time to symrot's time.
+    """Return, for each other program, the median and the smallest ratio of its time to symrot's time over all motions.
 
-    The ratios are taken over all motions and all powers of ten of the error.
+    There is one ratio for each motion and each power of ten of the error.
     """
     rows = []
     for peer in PEERS:
@@ -164,7 +164,7 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio with the smallest ratio in brackets, each with at least two digits."""
+    """Return the text of a median ratio, with the smallest ratio in brackets; both have at least two digits."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

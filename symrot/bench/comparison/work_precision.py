@@ -41,7 +41,7 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """Limits of the duration of a work-precision study."""
+    """The settings that determine how long a work-precision study takes."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
@@ -118,7 +118,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash of a motion; it depends on body, initial state, torques and span but not on the title."""
+    """Return a hash that identifies a motion; it depends on body, initial state, torques and span, not on the title."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -173,7 +173,7 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return, for each decade of the error, the fastest run, and the times of all methods relative to it.
+    """Return, for each power of ten of the error (decade), the fastest run, and all methods' times relative to it.
 
     Decades below ``floor``, the difference between the references, are left out.
     """
@@ -200,8 +200,8 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return, for each other program (peer), the median and the least ratio of its time to symrot's time.
 
-    The ratios are taken over the decades of the error, for symrot's steppers and for all its methods. If heyoka ran in
-    several settings, its fastest setting at each decade counts as one more peer.
+    There is one ratio for each decade of the error; the results are given for symrot's steppers and for all its
+    methods. If heyoka ran with several settings, its fastest setting at each decade counts as one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]

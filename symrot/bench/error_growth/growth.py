@@ -67,7 +67,7 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return a sentence that says why a motion has no Taylor series, or an empty text if it has a Taylor series."""
+        """Return the reason why a motion has no Taylor series, or an empty text if it has one."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
@@ -155,9 +155,9 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method of computing a motion: name, description, two limits, and the function that runs the method.
+    """A method for computing a motion: name, description, limits of the motion's length, and the function that runs it.
 
-    The limits are the largest numbers of revolutions that the method computes, by default and with ``--long``.
+    The limits are the largest numbers of revolutions for which the method is run, by default and with ``--long``.
     """
 
     name: str
@@ -203,6 +203,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median of the error ``name``, a field of :class:`Curve` such as ``attitude``, over several motions."""
+    """Return the median over several motions of the error ``name``, a field of :class:`Curve` such as ``attitude``."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

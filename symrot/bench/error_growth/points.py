@@ -1,9 +1,9 @@
-"""Points of a body, moved in steps along their velocity: the body grows with tangent steps, not with secant steps.
+"""Points of a body that are moved step by step: tangent steps enlarge the body, secant steps do not.
 
 ``r + h (omega x r)`` is longer than r, because the step is perpendicular to r: ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``.
 For r perpendicular to the axis, the length grows by the factor ``sqrt(1 + (omega h)^2)``. The secant joins two points
-of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length exactly. These laws are decided exactly for every
-report (:func:`laws`) and compared with a step-by-step computation.
+of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length exactly. For every report these laws are proven
+(:func:`laws`) and compared with a step-by-step computation.
 
 Source: Chen, Rigid Body Rotation, slides 25-27.
 """
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The result of moving points of a body with one step size: computed growth, growth by the law, strain, error."""
+    """The result of moving a body's points with one step size: growth, growth expected by the law, strain, error."""
 
     scheme: str
     h: float  # s
@@ -34,7 +34,7 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws of one tangent or secant step, each as (law, whether it was proven exactly)."""
+    """Return the laws of one tangent or secant step, each as a pair (law, whether it was proven)."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -120,9 +120,11 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain of a set of points: the largest ratio of a distance after to before, over the least, minus 1.
+    """Return the strain of a set of points, from the ratios of all distances after and before.
 
-    So a uniform change of size is no strain.
+    It is the largest ratio divided by the least ratio, minus 1.
+
+    A uniform change of size thus has the strain zero.
     """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))

@@ -4,9 +4,9 @@
 
 Without a scene, a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), with medians over
 three starts; with a scene, the scene's motion is followed over its span. The reference has 30 digits and shares no code
-with any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested: Euler angles against
-the quaternion as integrated state, near gimbal lock and through it; the quaternion with and without renormalisation;
-points moved along tangents or secants.
+with any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested, by three comparisons:
+Euler angles and the quaternion as integrated state, near gimbal lock and through it; the quaternion with and without
+renormalisation; points moved along tangents and along secants.
 """
 
 import math
@@ -145,7 +145,7 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return steps and errors of motions that pass near gimbal lock, for three choices of the integrated state.
+    """Compute motions that pass near gimbal lock, with three choices of the integrated state; return steps and errors.
 
     The state is the quaternion, Euler angles whose sequence is switched, or Euler angles of one sequence.
     """
@@ -171,7 +171,7 @@ def passes() -> list[dict[str, Any]]:
 
 
 def scene_distance(text: str | int) -> float:
-    """Return a distance to gimbal lock, an entry of ``PASSES``, as a float."""
+    """Return a distance to gimbal lock (an entry of ``PASSES``, rad) as a float."""
     top, _, bottom = str(text).partition("/")
     return float(top) / float(bottom or 1)
 

@@ -59,9 +59,9 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(values: Any, linear: bool) -> Any:
-    """Return the largest error up to each time, if ``linear``; else the errors themselves.
+    """Return the errors for the plot: if ``linear``, the largest error up to each time, otherwise the errors as given.
 
-    An error that changes sign is small only near its zeros.
+    The largest error is smoother, because an error that changes its sign is small near its zeros.
     """
     if not linear:
         return values

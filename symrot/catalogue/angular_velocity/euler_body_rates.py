@@ -19,19 +19,21 @@ def derive() -> Derivation:
     d = Derivation(
         "euler_body_rates",
         title="Angular velocity from Euler angle rates, all 24 sequences",
-        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, for ZXZ; the others follow the same way",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, for ZXZ; the other sequences follow in the same "
+        "way",
         about=(
-            "The direction cosine matrix $R$ takes body components to space components. Its rate defines the angular "
-            r"velocity: $\dot R = R\,[\omega_b]_\times = [\omega_s]_\times R$, where $[v]_\times u = v \times u$. "
-            "For each sequence, $R$ is differentiated by the chain rule, and the matrices $B$ of "
-            r"$\omega_b = B_b \dot q$ and $\omega_s = B_s \dot q$ are proven against that definition. Column $i$ of "
-            "$B$ is the axis of turn $i$, carried into the body (or into space) by the turns between."
+            "The direction cosine matrix $R$ maps body components to space components. Its rate defines the angular "
+            r"velocity: $\dot R = R\,[\omega_b]_\times = [\omega_s]_\times R$, where $[v]_\times u = v \times u$. For "
+            r"each sequence, $R$ is differentiated by the chain rule, and the matrices $B_b$ and $B_s$ of $\omega_b = "
+            r"B_b \dot q$ and $\omega_s = B_s \dot q$ are proven from this definition. Column $i$ of $B$ is the axis "
+            "of rotation $i$ in components of the body (or of space)."
         ),
     )
     d.passage(
-        r"The angles $q = (\phi, \theta, \psi)$ are in order of application. Upper case sequences are intrinsic, about "
-        r"axes of the body; lower case ones are extrinsic, about axes of space. The argument is the same for every "
-        "sequence: the first one has the reasons, and for the others the formulas follow in the same order."
+        r"The angles $q = (\phi, \theta, \psi)$ are in order of application. Sequences in upper case are intrinsic, "
+        "about axes of the body; sequences in lower case are extrinsic, about axes of space. The proof is the same "
+        "for every sequence, so the reasons are printed for the first sequence only; the formulas of the other "
+        "sequences follow in the same order."
     )
     for sequence in SEQUENCES:
         _sequence(d, sequence)
@@ -63,15 +65,15 @@ def _sequence(d: Derivation, sequence: str) -> None:
         via=[("The rate of the matrix, all nine entries:", dcm_rate, skew(space * RATES) * dcm_sb)],
     )
     d.step(
-        "The rates from the angular velocity in the body.",
+        "The angle rates follow from the angular velocity in the body by the inverse matrix.",
         body.inverse * body,
         eye(3),
-        because="the two matrices are inverse to each other",
+        because="the product of the inverse matrix and $B_b$ is the unit matrix",
         named=r"\dot q",
         display=MatMul(body.inverse, Matrix(symbols.omega_b)),
     )
     d.step(
-        f"The angles lock {_values(body)}.",
+        f"Gimbal lock occurs {_values(body)}.",
         body.det(),
         body.determinant,
         because="at gimbal lock the three axes lie in one plane, and no angle rates give an angular velocity "
@@ -90,6 +92,6 @@ def _values(jacobian: object) -> str:
     """Return, as LaTeX, the angles from 0 to 2 pi at which an Euler sequence is singular."""
     singular = jacobian.singular_set  # type: ignore[attr-defined]
     points = ", ".join(_latex(point) for point in singular.points())
-    return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one turn".replace(r"\{", r"\lbrace ").replace(
-        r"\}", r"\rbrace"
-    )
+    return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one revolution".replace(
+        r"\{", r"\lbrace "
+    ).replace(r"\}", r"\rbrace")

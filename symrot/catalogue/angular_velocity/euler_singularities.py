@@ -22,11 +22,11 @@ def derive() -> Derivation:
         "422-430; for the rates see [all sequences](euler_body_rates.md)",
         about=(
             r"No three numbers describe all attitudes without a singularity. Where $\det B = 0$ in $\omega = B \dot "
-            r"q$, "
-            "the axes of the first and the last turn are one line: one combination of their angles turns nothing, one "
-            "axis is out of reach, and on the way there the rates grow like the inverse of the distance. All twelve "
-            "sequences are looked at, at each of their singular angles. The argument is the same for all: the first "
-            "one has the reasons, and for the others the formulas follow in the same order."
+            "q$, the axes of the first and the last rotation coincide. Then one combination of angle rates does not "
+            "rotate the body, the body cannot rotate about one direction, and near such an attitude the rates grow "
+            "like the inverse of the distance from it. This page treats all twelve sequences at each of their "
+            "singular angles. The proof is the same for every sequence, so the reasons are printed for the first "
+            "sequence only; the formulas of the other sequences follow in the same order."
         ),
     )
     for sequence in INTRINSIC_SEQUENCES:
@@ -44,16 +44,17 @@ def _sequence(d: Derivation, sequence: str) -> None:
     angle_cosine = (first.direction.T * middle.rotation * last.direction)[0]
     gram = jacobian.T * jacobian
     d.step(
-        f"How badly conditioned: the eigenvalues $\\lambda$ of $B^{{\\mathsf T}} B$ are $1$ and $1 \\pm c$, where $c = "
-        f"{_latex(angle_cosine)}$ is the cosine between the first axis and the last.",
+        rf"The condition number of $B$ follows from the eigenvalues $\lambda$ of $B^{{\mathsf T}} B$: they are $1$ "
+        rf"and $1 \pm c$, where $c = {_latex(angle_cosine)}$ is the cosine of the angle between the first and the "
+        "last axis.",
         (SCALE * eye(3) - gram).det(method="berkowitz"),
         (SCALE - 1) * (SCALE - 1 - angle_cosine) * (SCALE - 1 + angle_cosine),
-        because="the middle axis is at right angles to the other two",
+        because="the middle axis is perpendicular to the other two axes",
         named=r"\det \left( \lambda - B^{\mathsf T} B \right)",
     )
     adjugate = jacobian.adjugate(method="berkowitz")
     d.step(
-        "The determinant times the inverse has no denominator, at any angle.",
+        "The product of the determinant and the inverse has no denominator, so it is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
         adjugate,
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",
@@ -63,7 +64,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
     for point in dossier.locked:
         _locked(d, sequence, adjugate, point)
     if dossier.regular_sequences:
-        d.passage(f"Sequences that are regular at all these attitudes: {', '.join(dossier.regular_sequences)}.")
+        d.passage(f"Sequences without gimbal lock at any of these attitudes: {', '.join(dossier.regular_sequences)}.")
 
 
 def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) -> None:
@@ -80,18 +81,20 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         because="the first and the last rotation are about the same line",
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
-    d.define("The direction across the axes of the turns there, in the body:", "n", lost)
+    d.define(
+        "At this angle all three axes of rotation are perpendicular to one direction, in body components:", "n", lost
+    )
     d.step(
-        "No rates turn the body about it; its length is 1.",
+        "No angle rates rotate the body about $n$, which has length 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
-        because="the direction is perpendicular to all three axes of rotation",
+        because="$n$ is perpendicular to all three axes of rotation",
         named=r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
     strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
     d.step(
-        rf"The limit. On the way to ${where}$ the rates grow as $\det B\,\dot q \to {_sign(strength)}"
-        rf"s\,(n \cdot \omega)$ along the silent combination $s$, however the attitude is approached.",
+        rf"As $\theta$ approaches this angle, ${where}$, the rates grow: $\det B\,\dot q \to {_sign(strength)}s\,(n "
+        r"\cdot \omega)$. Here $s$ are the angle rates that do not rotate the body.",
         adjugate.subs(at),
         strength * silent * lost.T,
         because="the matrix of cofactors has rank one at gimbal lock",

@@ -25,18 +25,21 @@ def derive() -> Derivation:
         title="Quaternion rates",
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 4.5, for the Euler parameters",
         about=(
-            "A unit quaternion $q$ turns a vector by $v_s = q\\,v_b\\,\\bar q$. Its rate is bilinear in $q$ and the "
-            "angular velocity, has no singularity, and needs neither sine nor cosine: it is the attitude equation that "
-            "symrot integrates."
+            r"A unit quaternion $q$ rotates a vector by $v_s = q\,v_b\,\bar q$. The rate of $q$ is linear in $q$ and "
+            "in the angular velocity, has no singularity, and needs neither sine nor cosine. Therefore symrot "
+            "integrates this equation for the attitude."
         ),
     )
     unit = [unit_relation()]
     dcm_sb = quaternion_to_dcm()
     d.define(
-        r"The direction cosine matrix is the matrix of $v_b \mapsto q\,v_b\,\bar q$, with $q \bar q = 1$:", "R", dcm_sb
+        r"The direction cosine matrix is the matrix of the map $v_b \mapsto q\,v_b\,\bar q$, with $q \bar "
+        "q = 1$:",
+        "R",
+        dcm_sb,
     )
     d.step(
-        "It is orthogonal.",
+        "The matrix is orthogonal.",
         dcm_sb * dcm_sb.T,
         eye(3),
         because="the Hamilton product of quaternions preserves lengths",
@@ -44,7 +47,7 @@ def derive() -> Derivation:
         named=r"R R^{\mathsf T}",
     )
     d.step(
-        "It is a rotation, not a reflection.",
+        "The matrix is a rotation, not a reflection.",
         dcm_sb.det(),
         1,
         because="the determinant of the matrix is $|q|^6$",
@@ -54,16 +57,17 @@ def derive() -> Derivation:
 
     d.section("Rates from the angular velocity in the body")
     body = attitude_rates()
-    d.define(r"Let the quaternion change as half the product $q\,(0, \omega_b)$:", DQ, Matrix([*body.values()]))
+    d.define(r"Let the rate of the quaternion be half the product $q\,(0, \omega_b)$:", DQ, Matrix([*body.values()]))
     d.step(
-        "The norm is kept, exactly and for every norm.",
+        "The norm of the quaternion is constant, even if it is not 1.",
         rate(norm_squared(symbols.quaternion), body),
         0,
         because=r"$q$ and $q\,(0, \omega_b)$ are orthogonal vectors of four components",
         named=r"\frac{d}{dt} |q|^2",
     )
     d.step(
-        r"The direction cosine matrix then turns with $\omega_b$, all nine entries.",
+        r"Then the direction cosine matrix rotates with the angular velocity $\omega_b$ (body components), in all "
+        "nine entries.",
         rate(dcm_sb, body),
         dcm_sb * skew(OMEGA),
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",
@@ -72,19 +76,24 @@ def derive() -> Derivation:
         display=r"R\,[\omega_b]_\times",
     )
     d.step(
-        "Conversely, the angular velocity is the vector part of twice the conjugate times the rate.",
+        r"Conversely, the angular velocity is the vector part of $2\,\bar q\,\dot q$.",
         4 * quaternion_rates("body").T * Matrix([*body.values()]),
         OMEGA,
-        because="the columns of the matrix of rates are orthogonal and of length one half",
+        because=r"the columns of the rate matrix $M$ in $\dot q = M \omega_b$ are orthogonal and have length one half",
         relations=unit,
         named=r"2\,\mathrm{vec}(\bar q\,\dot q)",
     )
 
     d.section("Rates from the angular velocity in space")
     space = pairs(symbols.quaternion, quaternion_rates("space") * OMEGA_S)
-    d.define(r"With $\omega_s$ the factors change places, $(0, \omega_s)\,q$:", DQ, Matrix([*space.values()]))
+    d.define(
+        "With the angular velocity in space components, the factors change "
+        r"places: the rate is half the product $(0, \omega_s)\,q$:",
+        DQ,
+        Matrix([*space.values()]),
+    )
     d.step(
-        r"The direction cosine matrix turns with $\omega_s$.",
+        r"Then the direction cosine matrix rotates with the angular velocity $\omega_s$ (space components).",
         rate(dcm_sb, space),
         skew(OMEGA_S) * dcm_sb,
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",
@@ -93,7 +102,8 @@ def derive() -> Derivation:
         display=r"[\omega_s]_\times R",
     )
     d.step(
-        "Both are one equation: the rate in space of the turned angular velocity is the rate in the body.",
+        r"Both equations give the same rate: $\omega_s = R\,\omega_b$ in the equation for space gives the equation "
+        "for the body.",
         quaternion_rates("space") * dcm_sb * OMEGA,
         quaternion_product(Q, [0, *OMEGA]) / 2,
         because=r"$\omega_s = R\,\omega_b$",
@@ -102,14 +112,14 @@ def derive() -> Derivation:
         display=r"\tfrac12\,q\,(0, \omega_b)",
     )
     d.step(
-        r"The opposite quaternion is the same attitude.",
+        "The opposite quaternion $-q$ describes the same attitude.",
         quaternion_to_dcm(tuple(-Q)) - dcm_sb,
         0,
         because="the matrix $R$ is quadratic in the components of $q$",
         named="R(-q) - R(q)",
     )
     d.step(
-        "No attitude is singular.",
+        "The equation for the rates is singular at no attitude.",
         (quaternion_rates("body").T * quaternion_rates("body")).det() * 64,
         1,
         because=r"the matrix $M$ of $\dot q = M \omega_b$ has full rank at every unit quaternion",

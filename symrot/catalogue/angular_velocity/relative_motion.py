@@ -21,10 +21,9 @@ def derive() -> Derivation:
         source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, chapter 15; Goldstein, Poole & "
         "Safko, *Classical Mechanics*, 3rd ed., sections 4.9 and 4.10",
         about=(
-            r"A body moves in any way. Its point $P$ is at $x$ and moves with $v$ and $a$; another point is at $x + "
-            r"R\,d$. "
-            "What is that point's velocity and acceleration, if it belongs to the body, and if it moves through the "
-            "body?"
+            "A body moves in any way. Its point $P$ is at $x$ and has the velocity $v$ and the acceleration $a$. "
+            r"Another point $Q$ is at $x + R\,d$. What are the velocity and the acceleration of $Q$ if it is fixed in "
+            "the body, and if it moves relative to the body?"
         ),
     )
     dcm_sb = Matrix(quaternion_to_dcm())
@@ -42,7 +41,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
     velocity = rate(place, body)
     d.notation({"v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, body)})
     d.step(
-        "The velocity.",
+        "The velocity of $Q$ is the velocity of $P$ plus the cross product of the angular velocity and the offset.",
         velocity,
         V + dcm_sb * OMEGA.cross(D),
         because=r"$d$ is constant, and $\dot R = R\,[\omega_b]_\times$",
@@ -51,24 +50,27 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         display=r"v + R \left( \omega_b \times d \right)",
     )
     d.step(
-        "Along the line between them both points have one velocity: the line is neither stretched nor pressed.",
+        "Both points have the same velocity component along the line between them: their distance is constant.",
         (velocity - V).dot(dcm_sb * D),
         0,
-        because=r"$\omega \times d$ is at right angles to $d$",
+        because=r"$\omega \times d$ is perpendicular to $d$",
         relations=UNIT,
         named=r"(v_Q - v_P) \cdot R\,d",
     )
     d.step(
-        "The acceleration, with its components along the axes of the body.",
+        "The acceleration of $Q$ relative to $P$, in body components, has a term from the angular acceleration and a "
+        "centripetal term.",
         dcm_sb.T * (rate(velocity, body) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)),
-        because=r"the product rule is applied again, and each vector that rotates adds $\omega$ times it",
+        because="the velocity is differentiated by the product rule, where the rate of each vector that rotates with "
+        r"the body contains its cross product with $\omega$",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
     )
     d.step(
-        "Its second part points to the axis through $P$, and is $|\\omega|^2$ times the distance from it.",
+        r"The second term of the acceleration points toward the axis through $P$ along $\omega$; its size is "
+        r"$|\omega|^2$ times the distance from this axis.",
         OMEGA.cross(OMEGA.cross(D)),
         OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
         because=r"$a \times (b \times c) = b\,(a \cdot c) - c\,(a \cdot b)$",
@@ -80,7 +82,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
     )
     offset = Matrix([symbols.r_1, symbols.r_2, symbols.r_3])
     d.step(
-        "The angular velocity does not depend on which point is called $P$.",
+        "The angular velocity does not depend on the choice of the point $P$ of the body.",
         V + OMEGA.cross(D) + OMEGA.cross(offset - D),
         V + OMEGA.cross(offset),
         because="the cross product is linear in each factor",
@@ -95,10 +97,12 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
     velocity = rate(place, moving)
     d.notation({"u": U, "w": W, "v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, moving)}, moving)
     d.passage(
-        r"Seen from the body, let the point move with $u$ and accelerate with $w$:", (r"\dot d", "u"), (r"\dot u", "w")
+        "Let $Q$ have the velocity $u$ and the acceleration $w$ relative to the body:",
+        (r"\dot d", "u"),
+        (r"\dot u", "w"),
     )
     d.step(
-        "The velocity.",
+        "The velocity of $Q$ has the additional term $u$.",
         dcm_sb.T * (velocity - V),
         OMEGA.cross(D) + U,
         because="the velocity of the point is the sum of the velocity of its place in the body and its "
@@ -108,19 +112,20 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         display=r"\omega_b \times d + u",
     )
     d.step(
-        "The acceleration: that of the place, Coriolis' part, and the relative one.",
+        "The acceleration of $Q$ is that of the point of the body at the same place, plus the Coriolis acceleration "
+        r"$2\,\omega \times u$, plus the relative acceleration $w$.",
         dcm_sb.T * (rate(velocity, moving) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
-        because=r"the rotation of $u$ with the body and the change of place by $u$ each contribute $\omega \times u$",
+        because=r"the rate of $u$ and the rate of the offset $d$ each contribute $\omega \times u$",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
     )
     d.step(
-        "Coriolis' part does no work on the relative motion.",
+        "The Coriolis acceleration does no work on the relative motion.",
         (2 * OMEGA.cross(U)).dot(U),
         0,
-        because="the Coriolis term is at right angles to the relative velocity",
+        because="the Coriolis acceleration is perpendicular to the relative velocity",
         named=r"(2\,\omega_b \times u) \cdot u",
     )
 
@@ -129,30 +134,34 @@ def _axis(d: Derivation) -> None:
     d.section("The axis of the motion")
     center = OMEGA.cross(V) / squared(OMEGA)
     d.notation({r"\omega": OMEGA, "v": V, "d_0": center, "d": D})
-    d.passage(r"Let now all components be in one frame, and take the point at $d_0$ from $P$:",
+    d.passage("From here on all vectors have components in one and the same frame. Consider the point of the body "
+        "with this offset $d_0$ from $P$:",
             ("d_0", r"\frac{\omega \times v}{|\omega|^2}"))  # fmt: skip
     d.step(
-        r"Its velocity is along $\omega$: every motion of a body is, at each moment, a screw (Chasles, Mozzi).",
+        r"The velocity of this point is along $\omega$, so every motion of a body is, at each instant, a screw motion "
+        "(Chasles, Mozzi).",
         V + OMEGA.cross(center),
         OMEGA * OMEGA.dot(V) / squared(OMEGA),
-        because=r"$\omega \times (\omega \times v)$ is $-|\omega|^2$ times the part of $v$ across $\omega$",
+        because=r"$\omega \times (\omega \times v)$ is $-|\omega|^2$ times the component of $v$ perpendicular to "
+        r"$\omega$",
         named=r"v + \omega \times d_0",
         display=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
     )
     plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}
     d.notation({r"\omega": OMEGA.subs(plane), "v": V.subs(plane), "d_0": center.subs(plane)})
     d.step(
-        "In plane motion that point is at rest: the instantaneous centre.",
+        "In plane motion this point is at rest: it is the instantaneous centre of rotation.",
         (V + OMEGA.cross(center)).subs(plane),
         0,
-        because=r"velocity and angular velocity are at right angles",
+        because="the velocity is perpendicular to the angular velocity",
         named=r"\left. v + \omega \times d_0 \right|_{\omega \cdot v = 0}",
     )
     d.step(
-        "Around it, velocities are as in a turn about a fixed axis.",
+        "The velocities of all points are the same as in a rotation about a fixed axis through the instantaneous "
+        "centre.",
         (V + OMEGA.cross(D)).subs(plane),
         OMEGA.cross(D - center).subs(plane),
-        because="the velocity of the chosen point is zero",
+        because="the velocity of the instantaneous centre is zero",
         named=r"v + \omega \times d",
         display=r"\omega \times (d - d_0)",
     )

@@ -68,16 +68,16 @@ def derive() -> Derivation:
         title="Classical and modified Rodrigues parameters",
         source="Schaub & Junkins, *Analytical Mechanics of Space Systems*, chapter 3",
         about=(
-            "Three parameters project the sphere of unit quaternions: the classical ones from its centre, "
-            r"$g = (q_1, q_2, q_3)/q_0$, the modified ones from the point opposite to 1, "
-            r"$s = (q_1, q_2, q_3)/(1 + q_0)$. Everything about them is rational. $[v]_\times$ is the matrix of "
-            r"$u \mapsto v \times u$."
+            "The three Rodrigues parameters are a projection of the sphere of unit quaternions. The classical "
+            "parameters project it from its centre, $g = (q_1, q_2, q_3)/q_0$; the modified parameters project it "
+            "from $q = -1$, $s = (q_1, q_2, q_3)/(1 + q_0)$. The rotation matrix and the rates are rational "
+            r"functions of the parameters. $[v]_\times$ is the matrix of the map $u \mapsto v \times u$."
         ),
     )
     _projection(d, CLASSICAL, _classical())
     _projection(d, MODIFIED, _modified())
     d.step(
-        "The shadow set is the same attitude.",
+        "The shadow set $-s/|s|^2$ describes the same attitude as $s$.",
         MODIFIED.dcm(shadow()),
         MODIFIED.dcm(),
         because="the shadow set is the projection of $-q$",
@@ -100,52 +100,53 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
     )  # fmt: skip
     d.section(form.title)
     d.step(
-        "The direction cosine matrix is rational.",
+        "The direction cosine matrix is a rational function of the parameters.",
         quaternion_to_dcm(which.quaternion()),
         form.dcm[0],
-        because="the norm of the quaternion cancels",
+        because="the square root in the norm of the quaternion cancels",
         named="R",
         display=form.dcm[1],
     )
-    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE,
+    d.step("The direction cosine matrix is a rotation.", dcm_sb * dcm_sb.T, ONE,
            because="the matrix is the rotation matrix of a unit quaternion",
            named=r"R R^{\mathsf T}")  # fmt: skip
     d.step(
-        "The angular velocity in the body, from the rate of the matrix.",
+        "The angular velocity in the body is linear in the rates of the parameters.",
         dcm_rate,
         dcm_sb * skew(body * rates),
-        because="the rate of the matrix by the chain rule agrees with its product with the skew matrix",
+        because="the matrix is differentiated by the chain rule",
         named=r"\dot R",
         display=rf"R\,[B_b\,\dot {form.letter}]_\times",
     )
     d.step(
-        "The same matrix, collected.",
+        "The matrix $B_b$ has a short form in the skew matrix of the parameters.",
         body.as_immutable(),
         form.omega[0],
-        because="the entries of the matrix are polynomials of degree two at most",
+        because="the numerators of its entries are polynomials of degree two at most",
         named="B_b",
         display=form.omega[1],
     )
     d.step(
-        "The angular velocity in space.",
+        "So is the angular velocity in space.",
         dcm_rate,
         skew(space * rates) * dcm_sb,
-        because="the rate of the matrix by the chain rule agrees with its product with the skew matrix",
+        because="the matrix is differentiated by the chain rule",
         named=r"\dot R",
         display=rf"[B_s\,\dot {form.letter}]_\times R",
     )
     d.step(
-        "Its matrix is that of the body for the opposite parameters.",
+        "The matrix $B_s$ for space is the matrix $B_b$ for the body at the opposite parameters.",
         space.as_immutable(),
         body.as_immutable().xreplace(opposite),
         because="the two matrices differ by the sign of their skew part",
         named=f"B_s({form.letter})",
         display=f"B_b(-{form.letter})",
     )
-    d.step("The rates are polynomials in the parameters.", body.inverse * body, ONE,
+    d.step("The inverse of $B_b$ gives the rates of the parameters from the angular "
+        "velocity.", body.inverse * body, ONE,
            because="the two matrices are inverse to each other", named=r"B_b^{-1} B_b")  # fmt: skip
     d.step(
-        "They are the angular velocity times a matrix.",
+        "The entries of the inverse are polynomials in the parameters.",
         body.inverse,
         form.inverse[0],
         because="the inverse is a sum of the unit matrix, a skew matrix and the outer product of the parameters",

@@ -21,9 +21,9 @@ def derive() -> Derivation:
         source="Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., section 26; Goldstein, Poole & Safko, "
         "*Classical Mechanics*, 3rd ed., section 4.9",
         about=(
-            r"Because $R R^{\mathsf T} = 1$ at all times, $W = \dot R R^{\mathsf T}$ is skew: in three "
-            "dimensions it is a vector, the "
-            "angular velocity. It gives the velocity of every point of the body at once."
+            r"Because $R R^{\mathsf T} = 1$ at all times, the matrix $W = \dot R R^{\mathsf T}$ (the spin tensor) is "
+            "skew. In three dimensions a skew matrix corresponds to a vector, here the angular velocity. This vector "
+            "gives the velocities of all points of the body."
         ),
     )
     _skewness(d)
@@ -33,13 +33,14 @@ def derive() -> Derivation:
 
 
 def _skewness(d: Derivation) -> None:
-    d.section("Why there is a vector")
+    d.section("Why the spin tensor is a vector")
     moving = pairs(symbols.rotation_entries, symbols.rotation_entry_rates)
     d.notation({"R": MATRIX, r"\omega": OMEGA_S, "u": U}, moving)
     spin = MATRIX_RATE * MATRIX.T
-    d.passage(r"Let $R$ be any matrix that changes with time, and", (r"W", r"\dot R\,R^{\mathsf T}"))
+    d.passage("Let $R$ be any matrix that changes with time, and define", (r"W", r"\dot R\,R^{\mathsf T}"))
     d.step(
-        r"The symmetric part of $W$ is a rate. Where $R R^{\mathsf T} = 1$ stays so, it is zero: $W$ is skew.",
+        r"The matrix $W + W^{\mathsf T}$ is the rate of $R R^{\mathsf T}$. For a rotation $R R^{\mathsf T} = 1$ is "
+        "constant, so $W$ is skew.",
         spin + spin.T,
         rate(MATRIX * MATRIX.T, moving),
         because="the product rule gives one term from each factor",
@@ -47,7 +48,8 @@ def _skewness(d: Derivation) -> None:
         display=r"\frac{d}{dt} \left( R R^{\mathsf T} \right)",
     )
     d.step(
-        r"In three dimensions a skew matrix is a vector $\omega$, and multiplying by it is the cross product.",
+        r"In three dimensions a skew matrix has a vector $\omega$: multiplication by the matrix is the cross product "
+        r"with $\omega$.",
         skew(OMEGA_S) * U,
         OMEGA_S.cross(U),
         because=r"a skew matrix has $3 \cdot 2 / 2 = 3$ independent entries",
@@ -55,15 +57,15 @@ def _skewness(d: Derivation) -> None:
         display=r"\omega \times u",
     )
     d.step(
-        "The vector is read off the matrix.",
+        "The vector consists of three entries of the matrix.",
         vee(skew(OMEGA_S)),
         OMEGA_S,
-        because="a skew matrix has three independent entries, at known places",
+        because="the other nonzero entries of a skew matrix are their negatives",
         named=r"\mathrm{vee}\,[\omega]_\times",
         display=r"\omega",
     )
     d.step(
-        "Its square is symmetric.",
+        "The square of the skew matrix is symmetric.",
         skew(OMEGA_S) ** 2,
         OMEGA_S * OMEGA_S.T - squared(OMEGA_S) * eye(3),
         because=r"$\omega \times (\omega \times u) = \omega\,(\omega \cdot u) - |\omega|^2 u$",
@@ -77,8 +79,8 @@ def _frames(d: Derivation) -> None:
     unit, dcm_sb = [unit_relation()], Matrix(quaternion_to_dcm())
     d.notation({"R": dcm_sb, r"\omega_b": OMEGA, "R_1": dcm_sb, "R_2": quaternion_to_dcm(P)}, attitude_rates())
     d.step(
-        r"The skew matrix of a turned vector is the turned skew matrix; so with $\omega_s = R\,\omega_b$ the two forms "
-        r"$\dot R = [\omega_s]_\times R = R\,[\omega_b]_\times$ are one.",
+        r"The skew matrix of a rotated vector is the rotated skew matrix. So $\dot R = [\omega_s]_\times R$ and $\dot "
+        r"R = R\,[\omega_b]_\times$ are the same equation, with $\omega_s = R\,\omega_b$.",
         skew(dcm_sb * OMEGA),
         dcm_sb * skew(OMEGA) * dcm_sb.T,
         because="a rotation preserves cross products",
@@ -88,7 +90,7 @@ def _frames(d: Derivation) -> None:
     )
     motion = attitude_rates()
     d.step(
-        "A motion given by a unit quaternion has this spin tensor.",
+        "A motion described by a unit quaternion has the spin tensor of its angular velocity.",
         rate(dcm_sb, motion) * dcm_sb.T,
         skew(dcm_sb * OMEGA),
         because=r"$\dot q = \tfrac12\,q\,(0, \omega_b)$",
@@ -101,8 +103,8 @@ def _frames(d: Derivation) -> None:
     product = dcm_sb * quaternion_to_dcm(P)
     d.notation({r"\gamma": Matrix(symbols.vertical)}, inner | outer)
     d.step(
-        r"Angular velocities add: if $R_1$ turns with $\omega$ and $R_2$, seen from there, with $\gamma$, the product "
-        r"$R_1 R_2$ turns with $\omega + R_1 \gamma$.",
+        r"Angular velocities add. If $R_1$ rotates with $\omega$ in space, and $R_2$ rotates with $\gamma$ relative "
+        r"to the frame of $R_1$, then $R_1 R_2$ rotates with $\omega + R_1 \gamma$.",
         rate(product, inner | outer),
         skew(OMEGA_S + dcm_sb * Matrix(symbols.vertical)) * product,
         because=r"$\frac{d}{dt} (R_1 R_2) = \dot R_1 R_2 + R_1 \dot R_2$",
@@ -113,13 +115,13 @@ def _frames(d: Derivation) -> None:
 
 
 def _points(d: Derivation) -> None:
-    d.section("What it does to points and vectors")
+    d.section("Velocities of points and rates of vectors")
     unit, dcm_sb = [unit_relation()], Matrix(quaternion_to_dcm())
     point, moving = Matrix(symbols.offset), Matrix(symbols.relative_velocity)
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
     d.notation({"d": point, r"\omega_s": dcm_sb * OMEGA}, motion)
     d.step(
-        "The velocity of a point of the body.",
+        r"A point of the body has the velocity $\omega \times r$.",
         rate(dcm_sb * point, motion),
         (dcm_sb * OMEGA).cross(dcm_sb * point),
         because="the components of the position in body axes are constant",
@@ -129,7 +131,7 @@ def _points(d: Derivation) -> None:
     )
     d.notation({}, pairs(symbols.offset, moving))
     d.step(
-        "The rate of any vector, seen from space and seen from the body.",
+        r"The rate of a vector in space is its rate relative to the body plus $\omega$ times the vector.",
         dcm_sb.T * rate(dcm_sb * point, motion | pairs(symbols.offset, moving)),
         moving + OMEGA.cross(point),
         because="the product rule gives one term from each factor",
@@ -138,7 +140,7 @@ def _points(d: Derivation) -> None:
         display=r"\dot d + \omega_b \times d",
     )
     d.step(
-        "Applied to the angular velocity itself: its rate is the same seen from both.",
+        "The rate of the angular velocity itself is the same in space and relative to the body.",
         dcm_sb.T * rate(dcm_sb * OMEGA, motion),
         Matrix(symbols.omega_rates),
         because=r"$\omega \times \omega = 0$",
@@ -149,14 +151,14 @@ def _points(d: Derivation) -> None:
     velocity = OMEGA_S.cross(U)
     gradient = velocity.jacobian(U)
     d.step(
-        "The velocities of all points are a field without divergence.",
+        "The velocity field of the body has no divergence.",
         gradient.trace(),
         0,
         because="the trace of a skew matrix is zero",
         named=r"\mathrm{div}\,(\omega \times r)",
     )
     d.step(
-        "Its curl is twice the angular velocity.",
+        "The curl of the velocity field is twice the angular velocity.",
         vee(gradient - gradient.T),
         2 * OMEGA_S,
         because=r"the velocity gradient is $[\omega]_\times$, and the curl contains each entry of it twice",

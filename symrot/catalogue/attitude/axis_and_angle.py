@@ -20,10 +20,10 @@ def derive() -> Derivation:
         title="Rodrigues' formula, axis and angle",
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 4.6 and 4.7",
         about=(
-            r"A turn by the angle $\alpha$ about the unit axis $n$ leaves what is along the axis and turns what is "
-            r"across "
-            "it. Conversely every rotation has an axis, and its matrix gives axis and angle back; at half a turn, "
-            "where the usual formula divides by zero, by another way."
+            r"A rotation by the angle $\alpha$ about the unit axis $n$ leaves the component of a vector along the "
+            "axis unchanged, and rotates the component perpendicular to it. Conversely, every rotation has an axis, "
+            r"and axis and angle follow from its matrix. At $\alpha = \pi$, where the usual formula divides by zero, "
+            "the axis follows from another formula."
         ),
     )
     _forward(d)
@@ -37,10 +37,10 @@ def _forward(d: Derivation) -> None:
     d.notation({"n": N, "v": V, "R": Matrix(dcm_of_axis_angle())})
     along = N * N.dot(V)
     across = V - along
-    d.define("The part of a vector along the axis, and", r"v_\parallel", along)
-    d.define("the part across it:", r"v_\perp", across)
+    d.define("The component of a vector along the axis is", r"v_\parallel", along)
+    d.define("The component perpendicular to the axis is", r"v_\perp", across)
     d.step(
-        "The two parts are at right angles.",
+        "The two components are perpendicular to each other.",
         across.dot(N),
         0,
         because="$n \\cdot n = 1$",
@@ -48,8 +48,8 @@ def _forward(d: Derivation) -> None:
         named=r"v_\perp \cdot n",
     )
     d.step(
-        r"The product $n \times v$ is as long as the part across the axis, and at right angles to it: the two span the "
-        "plane of the turn.",
+        r"The product $n \times v$ is perpendicular to $v_\perp$ and has the same length; both vectors span the plane "
+        "of the rotation.",
         Matrix([squared(N.cross(V)), N.cross(V).dot(across)]),
         Matrix([squared(across), 0]),
         because=r"$|n \times v|^2 = |v|^2 - (n \cdot v)^2$",
@@ -59,16 +59,16 @@ def _forward(d: Derivation) -> None:
     )
     turned = along + cos(ALPHA) * across + sin(ALPHA) * N.cross(V)
     d.step(
-        "Rodrigues' formula: in this plane the vector turns as in any plane.",
+        r"In this plane the vector rotates by $\alpha$ (Rodrigues' formula).",
         turned,
         dcm_of_axis_angle() * V,
-        because=r"a rotation by $\alpha$ takes $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
+        because=r"a rotation by $\alpha$ maps $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
         relations=UNIT,
         named=r"v_\parallel + \cos\alpha\;v_\perp + \sin\alpha\;n \times v",
         display=r"\left( 1 + \sin\alpha\,[n]_\times + (1 - \cos\alpha)\,[n]_\times^2 \right) v = R\,v",
     )
     d.step(
-        "All nine entries.",
+        "The rotation matrix in terms of axis and angle.",
         dcm_of_axis_angle(),
         cos(ALPHA) * eye(3) + (1 - cos(ALPHA)) * N * N.T + sin(ALPHA) * skew(N),
         because=r"$[n]_\times^2 = n n^{\mathsf T} - 1$ for a unit vector",
@@ -77,10 +77,10 @@ def _forward(d: Derivation) -> None:
         display=r"\cos\alpha\;\mathbf{1} + (1 - \cos\alpha)\,n n^{\mathsf T} + \sin\alpha\,[n]_\times",
     )
     d.step(
-        "It is a rotation.",
+        "The matrix is orthogonal.",
         dcm_of_axis_angle().T * dcm_of_axis_angle(),
         eye(3),
-        because="the lengths along the axis and across it do not change",
+        because="the rotation preserves the lengths of both components",
         relations=UNIT,
         named=r"R^{\mathsf T} R",
     )
@@ -91,7 +91,7 @@ def _back(d: Derivation) -> None:
     matrix = dcm_of_axis_angle()
     d.notation({"R": Matrix(quaternion_to_dcm())})
     d.step(
-        "Every rotation has an axis (Euler): the matrix, here of a unit quaternion, has the eigenvalue 1.",
+        "Every rotation has an axis (Euler): its matrix, written here with a unit quaternion, has the eigenvalue 1.",
         (Matrix(quaternion_to_dcm()) - eye(3)).det(),
         0,
         because=r"$\det (R - 1) = \det R^{\mathsf T} \det (R - 1) = \det (1 - R) = -\det (R - 1)$, in three dimensions",
@@ -100,7 +100,7 @@ def _back(d: Derivation) -> None:
     )
     d.notation({"R": Matrix(matrix)})
     d.step(
-        "The trace gives the cosine.",
+        "The trace gives the cosine of the angle.",
         (matrix.trace() - 1) / 2,
         cos(ALPHA),
         because=r"$\mathrm{tr}\,[n]_\times = 0$ and $|n| = 1$",
@@ -109,7 +109,7 @@ def _back(d: Derivation) -> None:
     )
     sine = vee(matrix - matrix.T) / 2
     d.step(
-        "The skew part gives the sine and the axis.",
+        "The skew part of the matrix gives the sine of the angle and the axis.",
         sine,
         sin(ALPHA) * N,
         because="only one of the three terms of the matrix is skew",
@@ -118,9 +118,8 @@ def _back(d: Derivation) -> None:
         display=r"\sin\alpha\;n",
     )
     d.step(
-        r"Together they are a point of the unit circle, and $\alpha = \mathrm{atan2}\left(|s|, \tfrac12 "
-        r"(\mathrm{tr}\,R - "
-        r"1)\right)$ is exact to rounding at every angle; an arccosine is not.",
+        r"Sine and cosine together give the angle $\alpha = \mathrm{atan2}\left(|s|, \tfrac12 (\mathrm{tr}\,R - "
+        r"1)\right)$, accurate to rounding at every angle. The arccosine alone loses digits near $0$ and $\pi$.",
         squared(sine) + (matrix.trace() - 1) ** 2 / 4,
         1,
         because=r"$\sin^2\alpha + \cos^2\alpha = 1$",
@@ -130,12 +129,12 @@ def _back(d: Derivation) -> None:
 
 
 def _half_turn(d: Derivation) -> None:
-    d.section("At half a turn")
+    d.section("The angle 180 degrees")
     half = dcm_of_axis_angle().subs(ALPHA, pi)
     d.notation({"R": Matrix(half)})
-    d.passage(r"At $\alpha = \pi$ the skew part is zero, and $n = s / \sin\alpha$ has no meaning.")
+    d.passage(r"At $\alpha = \pi$ the skew part of $R$ is zero, and $n = s / \sin\alpha$ is undefined.")
     d.step(
-        "But then the symmetric part is the axis alone.",
+        "At this angle the matrix $R + 1$ gives the axis.",
         (half + eye(3)) / 2,
         N * N.T,
         because=r"$\cos\pi = -1$",
@@ -144,18 +143,18 @@ def _half_turn(d: Derivation) -> None:
         display=r"n\,n^{\mathsf T}",
     )
     d.step(
-        "Every column of it is along the axis; the longest is at least $1/\\sqrt 3$ long.",
+        r"Every column of $R + 1$ is a multiple of the axis. The longest column has at least the length $2/\sqrt 3$.",
         Matrix.hstack(*((half + eye(3)).col(k).cross(N) for k in range(3))),
         0,
-        because="column $k$ is $2\\,n_k\\,n$, and the three $n_k^2$ have the sum 1",
+        because=r"column $k$ is $2\,n_k\,n$, and the sum of the three squares $n_k^2$ is 1",
         relations=UNIT,
         named=r"(R + 1)\,e_k \times n,\ k = 1, 2, 3",
     )
     d.step(
-        "The sign of $n$ is free: both axes give one rotation.",
+        r"The sign of $n$ is arbitrary: $n$ and $-n$ give the same rotation by $\pi$.",
         dcm_of_axis_angle(-N, pi) - half,
         0,
-        because="rotations by half a turn to the left and to the right are equal",
+        because=r"rotations by $\pi$ and by $-\pi$ are equal",
         relations=UNIT,
         named=r"R(-n, \pi) - R(n, \pi)",
     )
@@ -163,7 +162,7 @@ def _half_turn(d: Derivation) -> None:
     d.notation({"R": Matrix(matrix)})
     symmetric = matrix + matrix.T + (1 - matrix.trace()) * eye(3)
     d.step(
-        "The same works at every angle, with no loss of digits near half a turn.",
+        r"A similar matrix gives the axis at every angle, without loss of digits near $\pi$.",
         symmetric,
         4 * sin(ALPHA / 2) ** 2 * N * N.T,
         because=r"$1 - \cos\alpha = 2 \sin^2 (\alpha/2)$",

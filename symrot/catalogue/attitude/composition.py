@@ -22,9 +22,9 @@ def derive() -> Derivation:
         source="Altmann, *Rotations, Quaternions, and Double Groups*, chapter 9; Goldstein, Poole & Safko, "
         "*Classical Mechanics*, 3rd ed., section 4.8",
         about=(
-            "Two rotations, one after the other, are a rotation. Its axis depends on which came first, its angle does "
-            "not; and the difference of the two orders is, for small angles, a turn about the cross product of the "
-            "axes."
+            "Two successive rotations are one rotation. The axis of this rotation depends on the order of the two, "
+            "its angle does not. For small angles, the products in both orders differ by a rotation about the cross "
+            "product of the two axes."
         ),
     )
     _product(d)
@@ -45,7 +45,7 @@ def _product(d: Derivation) -> None:
     )  # fmt: skip
     units = [unit_relation(P), unit_relation(Q)]
     d.step(
-        "The product of two unit quaternions has unit norm.",
+        "The product of two unit quaternions has norm 1.",
         squared(Matrix(quaternion_product(P, Q))),
         1,
         because="$|p q| = |p|\\,|q|$, Euler's identity of four squares",
@@ -53,7 +53,7 @@ def _product(d: Derivation) -> None:
         named="|p\\,q|^2",
     )
     d.step(
-        "Its matrix is the product of the matrices.",
+        "The matrix of the product is the product of the matrices.",
         quaternion_to_dcm(quaternion_product(P, Q)),
         quaternion_to_dcm(P) * quaternion_to_dcm(Q),
         because=r"$p\,(q\,v\,\bar q)\,\bar p = (p q)\,v\,\overline{(p q)}$",
@@ -64,10 +64,11 @@ def _product(d: Derivation) -> None:
     product = quaternion_product(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
     cosine = cos(ALPHA / 2) * cos(BETA / 2) - sin(ALPHA / 2) * sin(BETA / 2) * N.dot(K)
     d.passage(
-        r"Let the first turn be by $\theta$ about $k$, the second by $\alpha$ about $n$: $R(n, \alpha)\,R(k, \theta)$."
+        r"Let the first rotation be by $\theta$ about $k$, the second by $\alpha$ about $n$: $R(n, \alpha)\,R(k, "
+        r"\theta)$."
     )
     d.step(
-        "The angle of the product (Rodrigues).",
+        "The scalar part of the product gives the angle of the product (Rodrigues).",
         product[0],
         cosine,
         because="the scalar part of a product of quaternions is the product of the scalar parts minus the "
@@ -81,10 +82,11 @@ def _product(d: Derivation) -> None:
         + sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K)
     )
     d.step(
-        "Its axis.",
+        "The vector part of the product gives the axis of the product.",
         Matrix(product[1:]),
         vector,
-        because="the vector part of a product holds each vector times the other's scalar part, and their cross product",
+        because="the vector part of a product contains each vector times the scalar part of the other factor, and the "
+        "cross product of the vectors",
         named=r"\text{axis}\;\sin \tfrac{\text{angle}}{2}",
         display=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
         r" + \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k",
@@ -96,7 +98,7 @@ def _order(d: Derivation) -> None:
     one = quaternion_product(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
     other = quaternion_product(quaternion_of_axis_angle(K, BETA), quaternion_of_axis_angle(N, ALPHA))
     d.step(
-        "The other order has the same angle, and another axis unless the axes are parallel.",
+        "In the other order the product has the same angle, and another axis unless the two axes are parallel.",
         one - other,
         Matrix([0, *(2 * sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K))]),
         because="if the factors are exchanged, only the cross product changes its sign",
@@ -105,14 +107,14 @@ def _order(d: Derivation) -> None:
     )
     quarter_x, quarter_z = (elementary_rotation(axis, pi / 2) for axis in "XZ")
     d.step(
-        "A quarter turn about $x$ and then one about $z$, or first about $z$.",
+        "The two orders of quarter rotations about $x$ and about $z$ give rotations about different axes.",
         Matrix.hstack(quarter_z * quarter_x, quarter_x * quarter_z),
         Matrix.hstack(*(dcm_of_axis_angle(Matrix([1, s, 1]) / sqrt(3), 2 * pi / 3) for s in (1, -1))),
         because="both products are rotations by 120 degrees, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
         named=r"\begin{bmatrix} R_z R_x & R_x R_z \end{bmatrix}_{\alpha = \pi/2}",
     )
     d.step(
-        "Turns about one axis can be exchanged: their angles add.",
+        "Rotations about the same axis can be exchanged: their angles add.",
         dcm_of_axis_angle(N, ALPHA) * dcm_of_axis_angle(N, BETA),
         dcm_of_axis_angle(N, ALPHA + BETA),
         because=r"$[n]_\times$ commutes with itself",
@@ -122,10 +124,10 @@ def _order(d: Derivation) -> None:
     )
     half_n, half_k = dcm_of_axis_angle(N, pi), dcm_of_axis_angle(K, pi)
     d.step(
-        "So can two half turns about axes at right angles.",
+        r"Rotations by $\pi$ about two perpendicular axes can be exchanged too.",
         half_n * half_k - half_k * half_n,
         0,
-        because="the two products differ only in sign, and $q$ and $-q$ are the same attitude",
+        because="the products of the two quaternions differ only in sign, and $q$ and $-q$ describe the same attitude",
         relations=[*AXES, N.dot(K)],
         named=r"R(n, \pi)\,R(k, \pi) - R(k, \pi)\,R(n, \pi)",
     )
@@ -137,14 +139,14 @@ def _small(d: Derivation) -> None:
     other = dcm_of_axis_angle(K, BETA) * dcm_of_axis_angle(N, ALPHA)
     still = {ALPHA: 0, BETA: 0}
     d.step(
-        "To first order the order does not matter: small turns add like vectors.",
+        "To first order in the angles, the order of the rotations does not matter: small rotations add like vectors.",
         Matrix.hstack(*((one - other).diff(angle).subs(still) for angle in (ALPHA, BETA))),
         0,
-        because=r"$(1 + \alpha\,[n]_\times)(1 + \theta\,[k]_\times)$ is symmetric up to the product $\alpha\theta$",
+        because=r"the two products differ only by terms with the factor $\alpha\theta$",
         named=r"\left. \frac{\partial (R_n R_k - R_k R_n)}{\partial (\alpha, \theta)} \right|_0",
     )
     d.step(
-        "To second order they differ by a turn about the cross product of the axes.",
+        "To second order, the products in both orders differ by a rotation about the cross product of the axes.",
         (one - other).diff(ALPHA, BETA).subs(still),
         skew(N.cross(K)),
         because=r"the commutator of two skew matrices is the skew matrix of the cross product of their vectors",
@@ -155,13 +157,13 @@ def _small(d: Derivation) -> None:
 
 
 def _frames(d: Derivation) -> None:
-    d.section("Axes of space, axes of the body")
+    d.section("Rotations about axes of space and of the body")
     dcm_sb = Matrix(quaternion_to_dcm())
     carried = dcm_sb * K
-    d.passage(r"Let the body have the attitude $R$, and turn by $\theta$ about an axis that is $k$ in the body, "
-            r"so $R k$ in space.")  # fmt: skip
+    d.passage(r"Let the body have the attitude $R$, and then rotate by $\theta$ about an axis with the "
+        "body components $k$ and the space components $R k$.")  # fmt: skip
     d.step(
-        "A turn about an axis of the body is a factor on the right.",
+        "A rotation about an axis of the body multiplies $R$ from the right.",
         dcm_of_axis_angle(carried, BETA) * dcm_sb,
         dcm_sb * dcm_of_axis_angle(K, BETA),
         because=r"$[R k]_\times = R\,[k]_\times R^{\mathsf T}$",
@@ -170,7 +172,7 @@ def _frames(d: Derivation) -> None:
         display=r"R\;R(k, \theta)",
     )
     d.step(
-        "Hence the angle of a rotation is the same in all axes, and its axis turns like a vector.",
+        "In other axes a rotation has the same angle, and its axis is transformed like a vector.",
         dcm_sb * dcm_of_axis_angle(K, BETA) * dcm_sb.T,
         dcm_of_axis_angle(carried, BETA),
         because=r"$R^{\mathsf T} R = 1$",
@@ -181,15 +183,17 @@ def _frames(d: Derivation) -> None:
     intrinsic = [elementary_rotation("Z", symbols.phi), elementary_rotation("X", symbols.theta)]
     second_axis = intrinsic[0] * Matrix([1, 0, 0])
     d.step(
-        "Turning about $z$ and then about the carried $x$ is turning about the fixed $x$ and then about the fixed $z$.",
+        "A rotation about $z$ followed by a rotation about the rotated $x$ is the same as a rotation about the fixed "
+        "$x$ followed by a rotation about the fixed $z$.",
         dcm_of_axis_angle(second_axis, symbols.theta) * intrinsic[0],
         intrinsic[0] * intrinsic[1],
-        because="the first of these steps is substituted; an intrinsic sequence is the extrinsic one in reverse order",
+        because="a rotation about an axis of the body multiplies from the right; so an intrinsic sequence is an "
+        "extrinsic sequence in reverse order",
         named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
         display=r"R_z(\phi)\,R_x(\theta)",
     )
     d.step(
-        "The inverse undoes the turns in reverse order.",
+        "The inverse of a product is the product of the inverse rotations in reverse order.",
         (intrinsic[0] * intrinsic[1]) * (intrinsic[1].T * intrinsic[0].T),
         eye(3),
         because="the inner pair of inverse rotations cancels first",

@@ -21,9 +21,10 @@ def derive() -> Derivation:
         "ONE* 17 "
         "(2022) e0276302",
         about=(
-            "The Euler parameters of an attitude, its unit quaternion, are the product of the three half-angle factors "
-            r"$\cos\frac{q}{2} + e \sin\frac{q}{2}$ of the turns. Half the sum and half the difference of the outer "
-            "angles appear, and lead back to the angles."
+            "The Euler parameters of an attitude are the components of its unit quaternion. The quaternion is the "
+            r"product of one factor $\cos\frac{q}{2} + e \sin\frac{q}{2}$ for each of the three rotations, where $q$ "
+            "is the angle and $e$ the axis. The parameters contain half the sum and half the difference of the first "
+            "and the last angle; the angles follow from them."
         ),
     )
     _precession(d)
@@ -36,7 +37,7 @@ def _precession(d: Derivation) -> None:
     q = Matrix(quaternion_of_euler("ZXZ"))
     total, difference = (PHI + PSI) / 2, (PHI - PSI) / 2
     d.step(
-        "The product of the three turns.",
+        "The quaternion is the product of three factors, one for each rotation.",
         q,
         Matrix(
             [
@@ -46,11 +47,12 @@ def _precession(d: Derivation) -> None:
                 cos(THETA / 2) * sin(total),
             ]
         ),
-        because="products of sines and cosines of the outer half angles combine into those of their sum and difference",
+        because="the product of the half angles' sines and cosines is written with the sum and the difference of the "
+        "first and the last angle",
         named=r"\begin{bmatrix} q_0 \\ q_1 \\ q_2 \\ q_3 \end{bmatrix}",
     )
     d.step(
-        "It has unit norm.",
+        "The quaternion has norm 1.",
         squared(q),
         1,
         because="each factor of the product has unit norm",
@@ -58,31 +60,31 @@ def _precession(d: Derivation) -> None:
     )
     tilt = dict(zip(Q, q, strict=True))
     d.step(
-        "The nutation alone, from the parameters.",
+        "Two sums of squares of the parameters depend on the nutation alone.",
         Matrix([Q[0] ** 2 + Q[3] ** 2, Q[1] ** 2 + Q[2] ** 2]).subs(tilt),
         Matrix([cos(THETA / 2) ** 2, sin(THETA / 2) ** 2]),
-        because=r"$\cos^2 + \sin^2 = 1$ for the outer angles",
+        because=r"$\cos^2 + \sin^2 = 1$ for half the sum and half the difference of $\phi$ and $\psi$",
         named=r"\begin{bmatrix} q_0^2 + q_3^2 \\ q_1^2 + q_2^2 \end{bmatrix}",
     )
     d.step(
-        r"The outer angles: $\frac{\phi + \psi}{2} = \mathrm{atan2}(q_3, q_0)$ and $\frac{\phi - \psi}{2} = "
-        r"\mathrm{atan2}(q_2, q_1)$.",
+        r"The first and the last angle follow from $\frac{\phi + \psi}{2} = \mathrm{atan2}(q_3, q_0)$ and $\frac{\phi "
+        r"- \psi}{2} = \mathrm{atan2}(q_2, q_1)$.",
         Matrix([Q[3] * cos(total) - Q[0] * sin(total), Q[2] * cos(difference) - Q[1] * sin(difference)]).subs(tilt),
         0,
-        because="the parameters of the first step are inserted; an angle is defined where its two parameters are not "
-        "both zero",
+        because="the parameters of step 1 are inserted; a half angle is defined where its two parameters are not both "
+        "zero",
         named=r"\begin{bmatrix} q_3 \cos\frac{\phi+\psi}{2} - q_0 \sin\frac{\phi+\psi}{2} \\"
         r" q_2 \cos\frac{\phi-\psi}{2} - q_1 \sin\frac{\phi-\psi}{2} \end{bmatrix}",
     )
     d.step(
-        r"At $\theta = 0$ only the sum of the outer angles is left, and the parameters stay regular.",
+        r"At $\theta = 0$ the parameters depend only on the sum of $\phi$ and $\psi$, and are regular.",
         q.subs(THETA, 0),
         Matrix([cos(total), 0, 0, sin(total)]),
         because=r"$\sin\frac\theta2 = 0$",
         named=r"q\,|_{\theta = 0}",
     )
     d.step(
-        "A whole turn in one angle changes the sign of all four, and no entry of the matrix.",
+        r"If one angle grows by $2\pi$, all four parameters change their signs, and the rotation matrix is unchanged.",
         q.subs(PHI, PHI + 2 * pi) + q,
         0,
         because=r"half of $2\pi$ is $\pi$",
@@ -93,14 +95,15 @@ def _precession(d: Derivation) -> None:
 def _all(d: Derivation) -> None:
     d.section("All sequences")
     d.passage(
-        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles. "
-        "The reason is the same for all and stands at the first."
+        "For each sequence, the product of the three factors is printed, and its rotation is proven to be the "
+        "rotation of the three angles. The reason is the same for all sequences and is printed for the first sequence "
+        "only."
     )
     for sequence in INTRINSIC_SEQUENCES:
         q = quaternion_of_euler(sequence)
         d.define(f"{sequence}:", "q", q)
         d.step(
-            "It is the rotation of the three angles.",
+            "The quaternion gives the rotation of the three angles.",
             quaternion_to_dcm(q),
             dcm(sequence),
             because="the quaternion of a product is the product of the quaternions",
@@ -108,7 +111,8 @@ def _all(d: Derivation) -> None:
             display=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
         )
     d.step(
-        "An extrinsic sequence is the intrinsic one read backwards, and so are its parameters.",
+        "An extrinsic sequence has the parameters of the intrinsic sequence of the reversed name, with the first and "
+        "the last angle exchanged.",
         quaternion_of_euler("zyx"),
         Matrix(quaternion_of_euler("XYZ")).subs({PHI: PSI, PSI: PHI}, simultaneous=True),
         because="a rotation about an axis of space multiplies the quaternion from the left",
@@ -116,7 +120,7 @@ def _all(d: Derivation) -> None:
         display=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
     )
     d.step(
-        "The matrix in the parameters has no sines: it is quadratic.",
+        "The rotation matrix is quadratic in the parameters, without sines; so is its trace.",
         quaternion_to_dcm().trace(),
         4 * symbols.q0**2 - 1,
         because="$q_1^2 + q_2^2 + q_3^2 = 1 - q_0^2$",

@@ -33,16 +33,16 @@ def derive() -> Derivation:
         title="Rotation matrices",
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 4.2 and 4.3",
         about=(
-            "A rigid body keeps the distances of its points. From this alone: the matrix that takes its "
-            "positions from one "
-            "attitude to another is orthogonal, in $D$ dimensions $D (D - 1) / 2$ numbers fix it, and in space three."
+            "The distances between the points of a rigid body are constant. It follows that the matrix that maps the "
+            "positions of the points from one attitude to another is orthogonal. In $D$ dimensions $D (D - 1) / 2$ "
+            "numbers determine it, in space three."
         ),
     )
     d.passage("Let $R$ be any matrix, with entries $R_{ij}$, and $u$, $v$ any vectors.")
     excess = MATRIX.T * MATRIX - eye(3)
     change = squared(MATRIX * U) - squared(U)
     d.step(
-        "By how much a vector changes its length is a quadratic form.",
+        "The change of a vector's squared length is a quadratic form in the vector.",
         change,
         U.dot(excess * U),
         because="$|R u|^2$ is the product of $R u$ with itself",
@@ -50,16 +50,16 @@ def derive() -> Derivation:
         display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) u",
     )
     d.step(
-        "If it is zero for every vector, so are its second derivatives: the matrix is orthogonal, "
+        "If this form is zero for every vector, its second derivatives are zero too: the matrix is orthogonal, "
         r"$R^{\mathsf T} R = 1$.",
         hessian(change, U) / 2,
         excess,
-        because="the matrix of a quadratic form, being symmetric, is half its second derivatives",
+        because="the symmetric matrix of a quadratic form is half the matrix of its second derivatives",
         named=r"\tfrac12\, \frac{\partial^2}{\partial u\,\partial u} \left( |R u|^2 - |u|^2 \right)",
         display=r"R^{\mathsf T} R - 1",
     )
     d.step(
-        "Then angles are kept as well.",
+        "Then the angles between vectors do not change either.",
         (MATRIX * U).dot(MATRIX * V) - U.dot(V),
         U.dot(excess * V),
         because=r"the same matrix $R^{\mathsf T} R$ occurs in the product of two different vectors",
@@ -76,12 +76,12 @@ def derive() -> Derivation:
         display=r"\left( \det R \right)^2",
     )
     d.passage(
-        "A motion cannot jump from $1$ to $-1$: the attitudes of a body have determinant 1. Those are the rotations."
+        "The determinant of a motion is continuous and 1 at the start, so it cannot jump to $-1$: the attitudes of a "
+        "body have determinant 1. Matrices of this kind are the rotations."
     )
     d.step(
-        r"Where $R^{\mathsf T} R = 1$ and the determinant is 1, every entry is its own cofactor: each "
-        "column is the cross product of "
-        "the next two.",
+        r"If $R^{\mathsf T} R = 1$ and the determinant is 1, every entry equals its own cofactor: each column is the "
+        "cross product of the next two columns.",
         (MATRIX.adjugate() - MATRIX.det() * MATRIX.T) * MATRIX,
         -MATRIX.det() * excess,
         because=r"$\mathrm{adj}(R)\,R = \det R$, for every matrix",
@@ -99,15 +99,15 @@ def _count(d: Derivation) -> None:
     conditions: Expr = summation(place, (place, 1, symbols.D))
     freedom = symbols.D * (symbols.D - 1) / 2
     d.step(
-        "In $D$ dimensions: the entries, less the conditions.",
+        "In $D$ dimensions, the number of entries minus the number of conditions is the number of free parameters.",
         symbols.D**2 - conditions,
         freedom,
         because=r"$R^{\mathsf T} R$ is symmetric, so that it has $1 + 2 + \cdots + D$ different entries",
         named=r"D^2 - \sum_{k=1}^{D} k",
     )
     d.step(
-        f"No condition follows from others: with $D = {', '.join(map(str, SIZES))}$, so many directions lead from 1 to "
-        r"other solutions. They are the skew matrices, $S + S^{\mathsf T} = 0$.",
+        f"The conditions are independent: for $D = {', '.join(map(str, SIZES))}$, the solutions near the unit matrix "
+        r"have $D (D - 1) / 2$ dimensions. They are $1 + \epsilon S$ to first order, with a skew matrix $S$.",
         Matrix([skew_dimension(size) for size in SIZES]),
         Matrix([freedom.subs(symbols.D, size) for size in SIZES]),
         because=r"$(1 + \epsilon S)^{\mathsf T} (1 + \epsilon S) = 1 + \epsilon (S + S^{\mathsf T})$ to "
@@ -115,7 +115,8 @@ def _count(d: Derivation) -> None:
         named=r"\dim \left\{ S : S + S^{\mathsf T} = 0 \right\}_D",
     )
     d.positive(
-        "A rotation of the plane has one angle. In three dimensions there are three, as many as axes; in four, six.",
+        "A rotation is determined by one number in the plane, by three numbers in space, and by six in four "
+        "dimensions.",
         freedom.subs(symbols.D, 3),
         because="$D (D - 1) / 2 = 1, 3, 6$ for $D = 2, 3, 4$",
         named=r"\left. \frac{D (D - 1)}{2} \right|_{D=3}",
@@ -128,13 +129,12 @@ def _angle(d: Derivation) -> None:
     first = Matrix([cos(alpha), sin(alpha)])
     conditions = Matrix([[first[0], first[1]], [-first[1], first[0]]])
     d.passage(
-        r"In the plane, let the first column be the unit vector $(\cos\alpha, \sin\alpha)$. The second "
-        "$(x, y)$ is at right "
-        "angles to it, and the determinant is 1: two linear equations.",
+        r"In the plane, let the first column be the unit vector $(\cos\alpha, \sin\alpha)$. The second column $(x, "
+        "y)$ is perpendicular to it, and the determinant is 1. These are two linear equations:",
         (conditions * U[:2, :], Matrix([0, 1])),
     )
     d.step(
-        "They have one solution.",
+        "The two equations have exactly one solution.",
         conditions.inv(method="ADJ") * Matrix([0, 1]),
         elementary_rotation(2, alpha)[:2, 1],
         because=r"the determinant of the two equations is $\cos^2\alpha + \sin^2\alpha$",
@@ -142,9 +142,9 @@ def _angle(d: Derivation) -> None:
     )
     for axis, name in enumerate("xyz"):
         turn = elementary_rotation(axis, alpha)
-        d.define(f"About the axis ${name}$:", f"R_{name}", turn)
+        d.define(f"The rotation about the axis ${name}$ is", f"R_{name}", turn)
         d.step(
-            "It is a rotation.",
+            "This matrix is orthogonal.",
             turn.T * turn,
             eye(3),
             because="one axis is fixed, and the plane perpendicular to it rotates",
@@ -152,21 +152,21 @@ def _angle(d: Derivation) -> None:
         )
     cayley = _cayley()
     d.step(
-        r"Three numbers $g$ make a rotation (Cayley), $R = (1 - [g]_\times)^{-1} (1 + [g]_\times)$.",
+        r"Any three numbers $g$ give a rotation $R = (1 - [g]_\times)^{-1} (1 + [g]_\times)$ (Cayley).",
         cayley.T * cayley,
         eye(3),
         because=r"$1 + [g]_\times$ and $1 - [g]_\times$ commute, and are transposes of each other",
         named=r"R^{\mathsf T} R",
     )
     d.step(
-        "Its determinant is 1.",
+        "The determinant of Cayley's matrix is 1.",
         cayley.det(),
         1,
-        because="a matrix and its transpose have the same determinant",
+        because=r"$1 + [g]_\times$ and its transpose $1 - [g]_\times$ have the same determinant",
         named=r"\det R",
     )
     d.step(
-        r"Near $g = 0$ they are independent: to first order $R$ is $1 + 2\,[g]_\times$.",
+        r"Near $g = 0$ the three numbers are independent: to first order $R$ is $1 + 2\,[g]_\times$.",
         Matrix([cayley.diff(g).subs(dict.fromkeys(symbols.rodrigues, 0)) / 2 for g in symbols.rodrigues]),
         Matrix([skew(eye(3).col(axis)) for axis in range(3)]),
         because=r"$(1 - [g]_\times)^{-1} = 1 + [g]_\times$ to first order",

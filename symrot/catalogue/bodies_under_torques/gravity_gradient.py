@@ -19,21 +19,20 @@ def derive() -> Derivation:
         title="Gravity gradient on a circular orbit",
         source="Hughes, *Spacecraft Attitude Dynamics*, chapters 8 and 9",
         about=(
-            "Gravity is stronger on the near side of a satellite. To first order in its size this gives a "
-            "torque that is "
-            "quadratic in the direction $r$ of the orbit's radius, and a motion with one invariant: the energy in axes "
-            "that turn with the orbit."
+            "Gravity is stronger on the near side of a satellite than on the far side. To first order in the size of "
+            "the satellite, this gives a torque that is quadratic in the direction $r$ of the orbital radius. The "
+            "motion has one invariant: the energy in axes that rotate with the orbit."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     unit = [squared(R) - 1]
     n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
     d.section("The torque")
     d.passage(
-        r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the "
-        r"centre of "
-        r"attraction in the direction $r$, is attracted by the inverse square of its distance; on a circular orbit "
-        r"$\mu / a^3 = n^2$, with $n$ the mean motion (Kepler):",
+        r"The satellite's centre of mass is at the distance $a = 1/\epsilon$ from the centre of attraction, in the "
+        r"direction $r$. A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass is attracted by a force "
+        r"that decreases with the square of the distance. On a circular orbit $\mu / a^3 = n^2$, where $n$ is the "
+        "mean motion (Kepler):",
         (r"F", r"-\,m\,n^2 a\, \frac{r + \epsilon \rho}{|r + \epsilon \rho|^3}"),
     )
     place = R + epsilon * P
@@ -41,7 +40,8 @@ def derive() -> Derivation:
     tidal = pull.diff(epsilon).subs(epsilon, S.Zero)
     d.notation({"r": R, r"\rho": P, "I": TENSOR, "m": mass, "n": n, r"\omega": OMEGA, "k": K})
     d.step(
-        "To first order in the size of the body, the tidal force stretches along the radius and squeezes across it.",
+        "To first order in the size of the body, the tidal force stretches the body along the radius and compresses "
+        "it perpendicular to the radius.",
         tidal,
         mass * n**2 * (3 * R.dot(P) * R - P),
         because="the derivative is taken at the centre of mass, where the radius has length 1",
@@ -52,10 +52,11 @@ def derive() -> Derivation:
     tensor = Matrix(inertia_of_point(mass, P))
     d.notation({r"I_\rho": tensor})
     d.step(
-        "Its moment is that of the tensor of inertia of the point; summed over the body, of the whole tensor.",
+        "The moment of the tidal force depends on the inertia tensor of the point. The sum over the body depends in "
+        "the same way on the inertia tensor of the body.",
         P.cross(tidal),
         3 * n**2 * R.cross(tensor * R),
-        because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first part is along $r$",
+        because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first term is along $r$",
         relations=unit,
         named=r"\tau = \rho \times \frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
         display=r"3 n^2\, r \times I_\rho\, r",
@@ -63,7 +64,7 @@ def derive() -> Derivation:
     torque = 3 * n**2 * R.cross(TENSOR * R)
     d.notation({r"\tau": torque})
     d.step(
-        "It has no component along the radius.",
+        "The torque has no component along the radius.",
         torque.dot(R),
         0,
         because="a vector product is perpendicular to its factors",
@@ -76,7 +77,8 @@ def derive() -> Derivation:
     seen, normal_s = dcm_sb.T * space_radius, Matrix([0, 0, 1])
     d.notation({"r": seen, "k": dcm_sb.T * normal_s}, attitude_rates() | {symbols.t: S.One})
     d.step(
-        r"Seen from the body, the radius turns with the orbit less the body; $k$ is the normal of the orbit.",
+        "In body axes, the direction of the radius rotates with the angular velocity of the orbit minus that of the "
+        "body; $k$ is the normal of the orbit.",
         rate(seen, attitude_rates() | {symbols.t: S.One}),
         seen.cross(OMEGA - n * dcm_sb.T * normal_s),
         because="in space the radius rotates about the normal at the rate $n$",
@@ -92,7 +94,7 @@ def derive() -> Derivation:
     d.notation({"r": R, "k": K}, motion)
     kinetic, potential = OMEGA.dot(TENSOR * OMEGA) / 2, Rational(3, 2) * n**2 * R.dot(TENSOR * R)
     d.step(
-        "Energy alone is not kept: the orbit does work.",
+        "The sum of kinetic and potential energy is not constant, because the orbital motion does work.",
         rate(kinetic + potential, motion),
         n * torque.dot(K),
         because="the potential depends on time through the radius",
@@ -100,7 +102,7 @@ def derive() -> Derivation:
         display=r"n\, k \cdot \tau",
     )
     d.step(
-        "What the orbit gives in energy it gives in angular momentum about its normal.",
+        "The angular momentum about the normal of the orbit changes in the same way.",
         rate(K.dot(TENSOR * OMEGA), motion),
         torque.dot(K),
         because="the rate of a component of angular momentum along a fixed direction is the component of the torque",
@@ -108,10 +110,10 @@ def derive() -> Derivation:
         display=r"k \cdot \tau",
     )
     d.step(
-        "So the energy in axes that turn with the orbit is kept (the Jacobi integral).",
+        "So the energy in axes that rotate with the orbit is constant (the Jacobi integral).",
         rate(kinetic + potential - n * K.dot(TENSOR * OMEGA), motion),
         0,
-        because="the gravity gradient is constant in axes that rotate with the orbit",
+        because="$n$ times the rate of the angular momentum is subtracted from the rate of the energy",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r"
         r" - n\, k \cdot I\,\omega \right)",
     )

@@ -18,9 +18,9 @@ def derive() -> Derivation:
         title="Gyroscopic precession of a wheel",
         source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, chapter 18",
         about=(
-            "A wheel on an axle that is held at one end does not fall: it goes round. Its angular momentum has to "
-            "change in "
-            "the direction of the torque, and that direction is level."
+            "A spinning wheel on an axle that is supported at one end does not fall: its axle rotates about the "
+            "vertical. The reason is that the angular momentum changes in the direction of the torque, and this "
+            "direction is horizontal."
         ),
     )
     momentum, motion = _momentum()
@@ -44,25 +44,24 @@ def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
 def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motion: dict) -> None:  # type: ignore[type-arg]
     d.section("The torque of steady precession")
     d.passage(
-        r"Angles of ZXZ. Nutation, precession $\dot\phi$ and spin $\dot\psi$ are constant, and the line of nodes, "
-        r"about which the "
-        "axle would tilt, is",
+        r"The Euler angles have the sequence ZXZ. The nutation and the rates $\dot\phi$ of precession and $\dot\psi$ "
+        "of spin are constant. The axle would tilt about the line of nodes:",
         ("e", line),
     )
     d.notation({r"\dot L_s": torque, "L_s": momentum, "e_z": Matrix([0, 0, 1]), "A": A, "C": C})
     total = (C * (SPIN + PRECESSION * cos(THETA)) - A * PRECESSION * cos(THETA)) * PRECESSION * sin(THETA)
     d.step(
-        "The rate of angular momentum is along the line of nodes: this torque keeps the precession going.",
+        "The rate of the angular momentum is along the line of nodes. A steady precession needs this torque.",
         torque,
         total * line,
-        because="angular momentum lies in the plane of the vertical and the axle, and rotates with this plane",
+        because="the angular momentum lies in the plane of the vertical and the axle, and rotates with this plane",
         named=r"\dot L_s",
         display=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = "
         r"\dot\psi + \dot\phi \cos\theta",
     )
     vertical = Matrix([0, 0, 1])
     d.step(
-        "It is the precession's turning of the angular momentum.",
+        "This rate comes from the rotation of the angular momentum about the vertical.",
         torque,
         (PRECESSION * vertical).cross(momentum),
         because=r"$L_s$ rotates about the vertical at the rate $\dot\phi$",
@@ -70,7 +69,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         display=r"\dot\phi\,e_z \times L_s",
     )
     d.step(
-        "It does no work.",
+        "The torque does no work.",
         torque.dot(Matrix(dcm("ZXZ")) * rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])),
         0,
         because="the line of nodes is perpendicular to the vertical and to the axle, and the angular velocity lies in "
@@ -80,12 +79,13 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
 
 
 def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
-    d.section("A level axle")
+    d.section("A horizontal axle")
     level = {THETA: pi / 2}
     axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]
     d.notation({"a": axle, r"\dot L_s": torque.subs(level), "c_3": ARM, "W": W})
     d.step(
-        "With the axle level the term with $A$ is gone: spin times precession times the moment of the wheel.",
+        "If the axle is horizontal, the term with $A$ vanishes. The torque is the product of the axial moment of "
+        "inertia and the rates of spin and precession.",
         torque.subs(level),
         C * SPIN * PRECESSION * line,
         because=r"$\cos\frac\pi2 = 0$; the result is exact for slow and fast precession",
@@ -94,7 +94,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     )
     weight = (ARM * axle).cross(Matrix([0, 0, -W]))
     d.step(
-        r"The weight $W$ of the wheel, at $c_3$ from the support, has this moment.",
+        "The weight $W$ of the wheel, at the distance $c_3$ from the support, has this moment.",
         weight,
         W * ARM * line,
         because="the weight points down, and the arm is horizontal",
@@ -103,7 +103,8 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     )
     steady = {PRECESSION: W * ARM / (C * SPIN)}
     d.step(
-        r"Hence the wheel precesses at $\dot\phi = W c_3 / (C \dot\psi)$: the slower the faster it spins.",
+        r"Hence the wheel precesses at $\dot\phi = W c_3 / (C \dot\psi)$. It precesses more slowly the faster it "
+        "spins.",
         torque.subs(level).subs(steady),
         weight,
         because="torque is the rate of angular momentum",
@@ -111,7 +112,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
         display=r"W c_3\;e",
     )
     d.step(
-        "The axle follows the torque: the angular momentum of the spin moves towards its direction.",
+        "The axle moves in the direction of the torque.",
         axle.diff(PHI),
         line,
         because="the axle is horizontal and rotates about the vertical",
@@ -119,9 +120,8 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
         display="e",
     )
     d.step(
-        "Pushed round faster than that, it rises; held back, it sinks: what is missing of the moment turns about the "
-        "line of "
-        "nodes.",
+        "If the axle is pushed around faster than this, it rises; if it is held back, it sinks. The difference "
+        "between the moment of the weight and the torque of the precession acts about the line of nodes.",
         (weight - torque.subs(level)).dot(line),
         W * ARM - C * SPIN * PRECESSION,
         because="the rate of the angular momentum is subtracted from the torque of the weight",
@@ -130,18 +130,19 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
 
 
 def _reactions(d: Derivation) -> None:
-    d.section("A wheel in a frame")
+    d.section("A wheel in a rotating frame")
     rotor = C * SPIN * Matrix([0, 0, 1])
     turning = Matrix([symbols.omega_1, symbols.omega_2, 0])
     d.step(
-        r"Turning the frame of a spinning wheel with $\omega$ asks the bearings for a moment across both axes.",
+        r"If the frame of a spinning wheel rotates with $\omega$, its bearings must supply a torque perpendicular to "
+        r"$\omega$ and to the wheel's axis.",
         turning.cross(rotor),
         C * SPIN * Matrix([symbols.omega_2, -symbols.omega_1, 0]),
-        because="the angular momentum of the spin rotates about the vertical",
+        because="the angular momentum of the spin rotates with the frame",
         named=r"\omega \times C\,\dot\psi\,e_3",
     )
     d.step(
-        "Two equal wheels that spin oppositely ask for none together.",
+        "Two equal wheels that spin in opposite directions need no total torque.",
         turning.cross(rotor) + turning.cross(-rotor),
         0,
         because="the angular momenta of the two wheels cancel",

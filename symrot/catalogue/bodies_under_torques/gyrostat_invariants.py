@@ -17,20 +17,20 @@ def derive() -> Derivation:
         title="A body with a rotor: the gyrostat",
         source="Hughes, *Spacecraft Attitude Dynamics*, chapter 6",
         about=(
-            r"A rotor inside the body adds an angular momentum $h$ that is constant in the body. The tensor "
-            r"$I$ is that of "
-            "the body with the rotor held fast; the motor that keeps the rotor at its speed exchanges energy, but only "
-            "with the rotor."
+            "A rotor inside the body has an additional angular momentum $h$, which is constant in the body. $I$ is "
+            "the inertia tensor of the body including the rotor at rest. The motor that keeps the speed of the rotor "
+            "constant exchanges energy only with the rotor."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     momentum_b = TENSOR * OMEGA + ROTOR
     dcm_sb = Matrix(quaternion_to_dcm())
     domega = Matrix(symbols.omega_rates)
     d.notation({"I": TENSOR, "h": ROTOR, r"\omega_b": OMEGA, r"\dot\omega_b": domega, "R": dcm_sb, r"\tau_b": TORQUE})
-    d.passage("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
+    d.passage("The total angular momentum is", (r"L_b", r"I\,\omega_b + h"))
     d.step(
-        "Its rate in space, along the axes of the body.",
+        "The rate of the total angular momentum in space, expressed in body components, contains $h$ in the "
+        "gyroscopic term.",
         dcm_sb.T * rate(dcm_sb * momentum_b, attitude_rates() | pairs(symbols.omega_b, domega)),
         TENSOR * domega + OMEGA.cross(momentum_b),
         because="$h$ rotates with the body",
@@ -47,13 +47,13 @@ def derive() -> Derivation:
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE, ROTOR)
     d.step(
-        "This is the torque if the angular acceleration is as follows.",
+        "This rate equals the torque if the angular acceleration has this form.",
         TENSOR * acceleration + OMEGA.cross(momentum_b),
         TORQUE,
         because="the inertia tensor has an inverse",
         board=(
             (
-                "The angular acceleration is put in; the inertia tensor and its inverse cancel:",
+                "The angular acceleration is inserted; the inertia tensor and its inverse cancel:",
                 r"\left( \tau_b - \omega_b \times (I\,\omega_b + h) \right) + \omega_b \times (I\,\omega_b + h)",
             ),
             ("The gyroscopic terms cancel:", r"\tau_b"),
@@ -66,7 +66,7 @@ def derive() -> Derivation:
     free = attitude_rates() | pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR))
     d.notation({r"\dot\omega_b": angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR)})
     d.step(
-        "The total angular momentum in space is kept.",
+        "The total angular momentum in space is constant.",
         rate(dcm_sb * momentum_b, free),
         0,
         because="there is no torque",
@@ -81,14 +81,14 @@ def derive() -> Derivation:
         ),
     )
     d.step(
-        "So is its length.",
+        "The length of the total angular momentum is constant.",
         rate(squared(momentum_b), free),
         0,
         because="a rotation preserves lengths",
         named=r"\frac{d}{dt}\,|I\,\omega_b + h|^2",
     )
     d.step(
-        "So is the energy of the body without the rotor's own.",
+        "The kinetic energy without the relative motion of the rotor is constant.",
         rate(OMEGA.dot(TENSOR * OMEGA) / 2, free),
         0,
         because=r"$\omega \times h$ does no work on the body",

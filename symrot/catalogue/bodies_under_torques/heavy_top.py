@@ -23,10 +23,9 @@ def derive() -> Derivation:
         "*Classical "
         "Mechanics*, 3rd ed., section 5.7",
         about=(
-            r"A symmetric body turns about a fixed point of its axis under its weight $W$, the centre of mass on the "
-            r"axis at "
-            r"$c_3$ from the point. Precession and spin are cyclic: what is left is one angle in an effective "
-            r"potential."
+            "A symmetric body rotates about a fixed point of its axis under its weight $W$. The centre of mass is on "
+            "the axis, at $c_3$ from the fixed point. The angles of precession and spin do not occur in the "
+            "Lagrangian (they are cyclic), so the nutation is the motion of one coordinate in an effective potential."
         ),
     )
     omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
@@ -41,17 +40,18 @@ def derive() -> Derivation:
 
 def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
     d.section("Lagrangian and cyclic momenta")
-    d.passage(r"Angles of ZXZ, axis 3 of space upwards, moments $A, A, C$ about the fixed point. The Lagrangian is",
+    d.passage("The Euler angles have the sequence ZXZ, axis 3 of space points upward, and the moments about the fixed "
+        "point are $A, A, C$. The Lagrangian is",
             (r"\mathcal L", r"T - W c_3 \cos\theta"))  # fmt: skip
     d.step(
-        "The kinetic energy.",
+        "The kinetic energy of the top is:",
         kinetic,
         HALF * A * (DTHETA**2 + DPHI**2 * sin(THETA) ** 2) + HALF * C * (DPSI + DPHI * cos(THETA)) ** 2,
         because=r"$\omega_b = B \dot q$, and two moments are equal",
         named=r"T = \tfrac12\,\omega \cdot I\,\omega",
     )
     d.step(
-        "Neither precession nor spin appears in it, so their momenta are kept.",
+        "The angles of precession and spin do not occur in the Lagrangian, so their momenta are constant.",
         Matrix([lagrangian.diff(PHI), lagrangian.diff(PSI)]),
         0,
         because="the top is symmetric about its axis, and gravity about the vertical",
@@ -60,7 +60,7 @@ def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
     )
     spin = DPSI + DPHI * cos(THETA)
     d.step(
-        "They are the angular momenta about the vertical and about the axis.",
+        "These momenta are the angular momenta about the vertical and about the symmetry axis.",
         Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]),
         Matrix([A * DPHI * sin(THETA) ** 2 + C * spin * cos(THETA), C * spin]),
         because="the Lagrangian is differentiated",
@@ -70,7 +70,7 @@ def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
     dpsi = P_PSI / C - cos(THETA) * dphi
     momenta = Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]).subs({DPHI: dphi, DPSI: dpsi})
     d.step(
-        r"Conversely, they give the rates: $\dot\phi = \frac{p_\phi - p_\psi \cos\theta}{A \sin^2\theta}$, "
+        r"Conversely, the momenta give the rates: $\dot\phi = \frac{p_\phi - p_\psi \cos\theta}{A \sin^2\theta}$, "
         r"$\dot\psi = \frac{p_\psi}{C} - \dot\phi \cos\theta$.",
         momenta,
         Matrix([P_PHI, P_PSI]),
@@ -105,7 +105,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         }
     )
     d.step(
-        "Energy: one angle is left.",
+        r"The energy is that of one coordinate $\theta$ in an effective potential $U$.",
         (kinetic + W * ARM * cos(THETA)).subs(rates),
         HALF * A * DTHETA**2 + potential,
         because="the rates of the cyclic angles are substituted",
@@ -117,7 +117,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
     motion = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
     nutation = rate(lagrangian.diff(DTHETA), motion) - lagrangian.diff(THETA)
     d.step(
-        "Lagrange's equation for the nutation is that of a point in this potential.",
+        "Lagrange's equation for the nutation is the equation of motion of one coordinate in this potential.",
         nutation.subs(rates),
         A * symbols.ddtheta + potential.diff(THETA),
         because="the rates are substituted after differentiating",
@@ -132,9 +132,8 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
     ) ** 2 / A**2
     d.notation({"u": cos(THETA), "E": energy})
     d.step(
-        r"In $u = \cos\theta$ the square of its rate is a cubic: nutation is an elliptic function of time, between "
-        r"two of the "
-        "cubic's zeros.",
+        r"The square of the rate of $u = \cos\theta$ is a cubic polynomial in $u$. So the nutation is an elliptic "
+        "function of time, and $u$ moves between two zeros of the polynomial.",
         speed,
         cubic.subs(height, cos(THETA)),
         because=r"$\dot u = -\dot\theta \sin\theta$ and $\tfrac12 A \dot\theta^2 = E - U$",
@@ -143,7 +142,8 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         r"u)^2}{A^2}",
     )
     d.step(
-        "At the poles the cubic is not positive: the axis reaches the vertical only if both momenta agree.",
+        r"At $u = \pm 1$ the cubic is not positive. So the axis can be vertical only if $p_\phi = p_\psi$ (upright) "
+        r"or $p_\phi = -p_\psi$ (hanging).",
         Matrix([cubic.subs(height, 1), cubic.subs(height, -1)]),
         -Matrix([(P_PHI - P_PSI) ** 2, (P_PHI + P_PSI) ** 2]) / A**2,
         because="$1 - u^2$ is zero at the vertical",
@@ -158,11 +158,11 @@ def _steady(d: Derivation, potential: Expr) -> None:
     steady = {P_PHI: P_PSI * cos(THETA) + A * RATE * sin(THETA) ** 2}
     d.names.pop("U")
     d.passage(
-        r"Let the axis keep its angle and precess at the rate $n$:",
+        "Let the nutation be constant, and let the axis precess at the rate $n$. Then",
         (r"p_\phi", r"p_\psi \cos\theta + A\,n \sin^2\theta"),
     )
     d.step(
-        "The condition is quadratic in the rate.",
+        "The condition of steady precession is quadratic in the rate.",
         potential.diff(THETA).subs(steady),
         -sin(THETA) * slope,
         because="in steady precession the effective potential is stationary",
@@ -171,33 +171,34 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
     fast, slow = _rates()
     d.passage(
-        r"This has two roots, a fast and a slow rate, real where $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
+        r"The condition has two roots, a fast and a slow rate. They are real for $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
         (r"n_\pm", r"\frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A W c_3 \cos\theta}}{2 A \cos\theta}"),
     )
     d.step(
-        "Both satisfy the condition.",
+        "Both rates satisfy the condition.",
         Matrix([slope.subs(RATE, fast), slope.subs(RATE, slow)]),
         0,
         because="the roots of the quadratic equation are substituted",
         named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
     )
     d.step(
-        r"Their sum and product: for a fast top they are $p_\psi / (A \cos\theta)$, as without weight, and $W c_3 / "
-        r"p_\psi$.",
+        "The sum and the product of the two rates have simple forms. For a fast top the rates are therefore close to "
+        r"$p_\psi / (A \cos\theta)$, as without weight, and to $W c_3 / p_\psi$.",
         Matrix([fast + slow, fast * slow]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
         because="the coefficients of the quadratic equation give sum and product of its roots (Vieta)",
         named=r"\begin{bmatrix} n_+ + n_- \\ n_+\,n_- \end{bmatrix}",
     )
     d.step(
-        "With a level axis there is one rate.",
+        "With a horizontal axis there is only one rate.",
         Matrix(solve(slope.subs(cos(THETA), 0), RATE)),
         Matrix([W * ARM / P_PSI]),
         because=r"$\cos\theta = 0$ leaves a linear equation",
         named="n",
     )
     d.step(
-        "A small nutation about steady precession swings with this frequency squared, times $A$.",
+        r"A small nutation about steady precession oscillates; the square of its frequency, times $A$, is $\partial^2 "
+        r"U / \partial \theta^2$.",
         (potential.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
         (A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2) / A,
         because=r"the condition for steady precession gives $p_\psi$; the right side is positive: it is "
@@ -205,7 +206,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         named=r"n^2\,\frac{\partial^2 U}{\partial \theta^2}",
     )
     d.step(
-        "So every steady precession is stable.",
+        "This derivative is positive, so every steady precession is stable.",
         A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2,
         (A * RATE**2 - W * ARM * cos(THETA)) ** 2 + (W * ARM * sin(THETA)) ** 2,
         because=r"$\sin^2\theta + \cos^2\theta = 1$",
@@ -223,7 +224,7 @@ def _sleeping(d: Derivation, potential: Expr) -> None:
     d.section("The sleeping top")
     upright = potential.subs(P_PHI, P_PSI)
     d.step(
-        r"Upright, $p_\phi = p_\psi$, and the potential is regular at the vertical.",
+        r"For an upright top $p_\phi = p_\psi$, and the potential is regular at the vertical.",
         upright,
         P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA),
         because=r"$\frac{1 - \cos\theta}{\sin\theta} = \tan\frac\theta2$",
@@ -231,8 +232,8 @@ def _sleeping(d: Derivation, potential: Expr) -> None:
     )
     regular = P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
     d.step(
-        r"It has a minimum there for $p_\psi^2 > 4 A W c_3$: the top sleeps, as long as friction leaves it that much "
-        r"spin.",
+        r"The potential has a minimum at the vertical for $p_\psi^2 > 4 A W c_3$. Then the top stands upright (it "
+        "sleeps) until friction has reduced the spin below this bound.",
         Matrix([regular.diff(THETA), regular.diff(THETA, 2)]).subs(THETA, 0),
         Matrix([0, (P_PSI**2 - 4 * A * W * ARM) / (4 * A)]),
         because=r"$\tan^2\frac\theta2 = \frac{\theta^2}{4}$ and $\cos\theta = 1 - \frac{\theta^2}{2}$ to second order",
@@ -241,7 +242,7 @@ def _sleeping(d: Derivation, potential: Expr) -> None:
     )
     fast, slow = _rates()
     d.step(
-        "The same bound makes the two rates of steady precession meet at the vertical.",
+        r"At the bound $p_\psi^2 = 4 A W c_3$, the two rates of steady precession are equal at the vertical.",
         (A * (fast - slow)).subs(THETA, 0) ** 2,
         P_PSI**2 - 4 * A * W * ARM,
         because=r"$\cos 0 = 1$",

@@ -15,21 +15,22 @@ ARM = Matrix(symbols.center_of_mass)
 def derive() -> Derivation:
     d = Derivation(
         "heavy_top_invariants",
-        title="What a heavy top keeps",
+        title="Conserved quantities of a heavy top",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, problem 1",
         about=(
-            "A body of any shape turns about a fixed point under its weight. Energy and the vertical component of "
-            "angular momentum are kept for every body; the spin, if the body is symmetric and its centre of "
-            "mass lies on "
-            "the axis. Three invariants make the symmetric top solvable."
+            "A body of any shape rotates about a fixed point under its weight. The energy and the vertical component "
+            "of the angular momentum are constant for every body. The spin is also constant if the body is symmetric "
+            "and its centre of mass lies on the axis. With these three invariants, the motion of the symmetric top "
+            "can be solved."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
-    d.passage(r"Let $\gamma$ be the direction of gravity in the body, and $c$ the centre of mass from the fixed point:",
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
+    d.passage(r"Let $\gamma$ be the direction of gravity in body components, and $c$ the vector from the fixed point "
+        "to the centre of mass:",
             (r"\gamma", r"R^{\mathsf T} \gamma_s"), (r"\tau_b", r"W\, c \times \gamma"))  # fmt: skip
     fixed = Matrix(symbols.normal)
     d.step(
-        "The direction of gravity turns backwards in the body (Poisson's equation).",
+        "In body axes, the direction of gravity rotates backwards (Poisson's equation).",
         rate(Matrix(quaternion_to_dcm()).T * fixed, attitude_rates()),
         (Matrix(quaternion_to_dcm()).T * fixed).cross(OMEGA),
         because=r"the direction is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
@@ -43,21 +44,21 @@ def derive() -> Derivation:
     d.section("Every body")
     energy = OMEGA.dot(TENSOR * OMEGA) / 2 - symbols.W * ARM.dot(DOWN)
     d.step(
-        "Energy is kept.",
+        "The energy is constant.",
         rate(energy, motion),
         0,
         because="the power of the weight is minus the rate of potential energy",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega - W\, c \cdot \gamma \right)",
     )
     d.step(
-        "The vertical component of angular momentum is kept.",
+        "The vertical component of the angular momentum is constant.",
         rate((TENSOR * OMEGA).dot(DOWN), motion),
         0,
         because="the weight has no moment about the vertical",
         named=r"\frac{d}{dt} \left( I\,\omega \cdot \gamma \right)",
     )
     d.step(
-        "The direction stays a unit vector.",
+        "The direction of gravity remains a unit vector.",
         rate(squared(DOWN), motion),
         0,
         because="the rate of a unit vector is perpendicular to it",
@@ -67,7 +68,7 @@ def derive() -> Derivation:
     inertia, arm = diag(symbols.A, symbols.A, symbols.C), Matrix([0, 0, symbols.c_3])
     acceleration = angular_acceleration(inertia, OMEGA, symbols.W * arm.cross(DOWN))
     d.step(
-        "The spin is kept when two moments are equal and the centre of mass is on axis 3.",
+        "The spin is constant if two moments are equal and the centre of mass is on axis 3.",
         acceleration[2],
         0,
         because="neither the gyroscopic term nor the weight has a moment about the axis",
@@ -82,8 +83,8 @@ def derive() -> Derivation:
         momentum.dot(DOWN) - symbols.C * symbols.omega_3 * height
     ) ** 2 / symbols.A
     d.step(
-        r"The height of the axis, $u = \gamma_3$, moves in a cubic potential: nutation is an elliptic "
-        r"function of time.",
+        r"The square of the rate of $u = \gamma_3$ is a cubic polynomial in $u$. So the nutation is an elliptic "
+        "function of time.",
         left,
         right,
         because="energy and the two conserved angular momenta determine the transverse angular velocity",
@@ -93,8 +94,7 @@ def derive() -> Derivation:
         r" - \frac{\left( L_\gamma - C \omega_3\, u \right)^2}{A}",
     )
     d.passage(
-        "Here $2 E - C \\omega_3^2 + 2 W c_3\\, u = A (\\omega_1^2 + \\omega_2^2)$ by the energy, and "
-        "$L_\\gamma$ is the "
-        "component of angular momentum along $\\gamma$."
+        r"By the energy, $2 E - C \omega_3^2 + 2 W c_3\, u = A (\omega_1^2 + \omega_2^2)$. $L_\gamma$ is the "
+        r"component of the angular momentum along $\gamma$."
     )
     return d

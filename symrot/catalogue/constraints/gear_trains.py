@@ -18,9 +18,9 @@ def derive() -> Derivation:
         "Dynamics*, "
         "chapter 15",
         about=(
-            "Two gears that mesh have one velocity where they touch. For a planetary train that is two equations "
-            "between four "
-            "rates; seen from the carrier it is an ordinary train, and this is Willis' formula."
+            "The teeth of two meshing gears have the same velocity at the point of contact. For a planetary gear "
+            "train this gives two equations for four rates. Relative to the carrier, the train is an ordinary gear "
+            "train; this is Willis' formula."
         ),
     )
     contacts = _contacts(d)
@@ -30,7 +30,7 @@ def derive() -> Derivation:
 
 
 def _contacts(d: Derivation) -> Matrix:
-    d.section("Velocities where the gears touch")
+    d.section("Velocities at the points of contact")
     unit = symbols.r  # pitch radius per tooth
     sun, planet = Z_S * unit, Z_P * unit
     axis = Matrix([0, 0, 1])
@@ -42,29 +42,29 @@ def _contacts(d: Derivation) -> Matrix:
     inner, outer = Matrix([sun, 0, 0]), Matrix([sun + 2 * planet, 0, 0])
     carried = CARRIER * (sun + planet)
     d.passage(
-        r"Sun $S$, planet $P$, ring $R$ and carrier $C$ turn about parallel axes. A pitch radius is the number of "
-        r"teeth $Z$ times "
-        r"one length $r$; the planet's axis is at $(Z_S + Z_P)\,r$ and moves with the carrier."
+        "The sun $S$, the planet $P$, the ring $R$ and the carrier $C$ rotate about parallel axes. The pitch radius "
+        "of each gear is its number of teeth $Z$ times a length $r$. The planet's axis is at the distance $(Z_S + "
+        r"Z_P)\,r$ from the sun's axis and moves with the carrier."
     )
     d.step(
-        "Sun and planet, where they touch:",
+        "At the contact of sun and planet, their velocities differ by:",
         velocity(origin, 0, SUN, inner) - velocity(middle, carried, PLANET, inner),
         Matrix([0, unit * (Z_S * (SUN - CARRIER) + Z_P * (PLANET - CARRIER)), 0]),
-        because=r"the velocity $v + \omega \times r$ of the contact point is the same on both gears",
+        because=r"the velocity of a point of a gear is $v + \omega \times r$",
         named="v_S - v_P",
     )
     d.step(
-        "The ring touches the planet from outside, which takes so many teeth:",
+        "The ring encloses the planet, so its number of teeth is:",
         outer[0] / unit,
         Z_S + 2 * Z_P,
         because="the ring's radius is the sun's radius plus twice the planet's radius",
         named="Z_R",
     )
     d.step(
-        "Planet and ring, where they touch:",
+        "At the contact of planet and ring, their velocities differ by:",
         velocity(middle, carried, PLANET, outer) - velocity(origin, 0, RING, outer),
         Matrix([0, unit * (Z_P * (PLANET - CARRIER) - (Z_S + 2 * Z_P) * (RING - CARRIER)), 0]),
-        because=r"the velocity $v + \omega \times r$ of the contact point is the same on both gears",
+        because=r"the velocity of a point of a gear is $v + \omega \times r$",
         named="v_P - v_R",
     )
     return Matrix(
@@ -77,19 +77,20 @@ def _contacts(d: Derivation) -> Matrix:
 
 def _willis(d: Derivation, contacts: Matrix) -> None:
     d.section("Willis' formula")
-    d.passage("Where the gears do not slip, both differences are zero.", *((entry, "0") for entry in contacts))
+    d.passage("The gears do not slip, so both differences are zero:", *((entry, "0") for entry in contacts))
     d.step(
-        "Seen from the carrier the rates of sun and ring are in the inverse ratio of their teeth, the sense reversed.",
+        "Relative to the carrier, sun and ring rotate in opposite directions, and their rates are in the inverse "
+        "ratio of their numbers of teeth.",
         Z_S * (SUN - CARRIER),
         -Z_R * (RING - CARRIER),
-        because="the rate of the planet, which is an idle gear, is eliminated",
+        because="the rate of the planet is eliminated",
         relations=list(contacts),
         named=r"Z_S (\omega_S - \omega_C)",
     )
     willis = Z_S * (SUN - CARRIER) + Z_R * (RING - CARRIER)
     cases = (
         (
-            "Ring held: the sun turns the carrier slowly, the same way.",
+            "If the ring is fixed, the carrier rotates more slowly than the sun and in the same direction.",
             {RING: 0},
             SUN,
             CARRIER,
@@ -97,8 +98,24 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
             "S",
             "C",
         ),
-        ("Sun held: the ring turns the carrier.", {SUN: 0}, RING, CARRIER, 1 + Z_S / Z_R, "R", "C"),
-        ("Carrier held: an ordinary train, reversed.", {CARRIER: 0}, SUN, RING, -Z_R / Z_S, "S", "R"),
+        (
+            "If the sun is fixed, the carrier rotates more slowly than the ring and in the same direction.",
+            {SUN: 0},
+            RING,
+            CARRIER,
+            1 + Z_S / Z_R,
+            "R",
+            "C",
+        ),
+        (
+            "If the carrier is fixed, the train is ordinary: sun and ring rotate in opposite directions.",
+            {CARRIER: 0},
+            SUN,
+            RING,
+            -Z_R / Z_S,
+            "S",
+            "R",
+        ),
     )
     for claim, held, driver, driven, ratio, upper, lower in cases:
         d.step(
@@ -109,24 +126,26 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
             named=rf"\frac{{\omega_{upper}}}{{\omega_{lower}}}",
         )
     d.step(
-        "Nothing held: the carrier has the mean of both rates, weighted with the teeth.",
+        "If nothing is fixed, the rate of the carrier is the mean of the rates of sun and ring, weighted with their "
+        "numbers of teeth.",
         solve(willis, CARRIER)[0],
         (Z_S * SUN + Z_R * RING) / (Z_S + Z_R),
         because="Willis' formula is linear in the rates",
         named=r"\omega_C",
     )
     d.step(
-        "With as many teeth on both sides, as in the differential of a car, half the sum.",
+        "If both have the same number of teeth, as in the differential of a car, the rate of the carrier is half the "
+        "sum of their rates.",
         solve(willis.subs(Z_R, Z_S), CARRIER)[0],
         (SUN + RING) / 2,
         because="the two weights in Willis' formula are equal",
         named=r"\omega_C",
     )
     d.step(
-        "All turning as one is a motion of the train.",
+        "If all parts rotate at the same rate, both contact conditions are satisfied.",
         contacts.subs(dict.fromkeys((*RATES, CARRIER), symbols.Omega), simultaneous=True),
         0,
-        because="then no gear moves relative to the carrier",
+        because="no gear moves relative to the carrier",
         named=r"\begin{bmatrix} v_S - v_P \\ v_P - v_R \end{bmatrix}",
     )
 
@@ -138,21 +157,20 @@ def _torques(d: Derivation) -> None:
     power = (sun * SUN + ring * RING + carrier * CARRIER).subs(rates)
     balance = solve([power.diff(SUN), power.diff(RING)], (ring, carrier), dict=True)[0]
     d.passage(
-        r"Without friction and at constant rates the powers of the torques $\tau_1$ on the sun, $\tau_2$ on the ring "
-        r"and $\tau_3$ on "
-        "the carrier add to zero at all rates of sun and ring."
+        r"Let the torques be $\tau_1$ on the sun, $\tau_2$ on the ring and $\tau_3$ on the carrier. Without friction "
+        "and at constant rates, the sum of their powers is zero for all rates of sun and ring."
     )
     d.step(
-        "Hence they are in fixed ratios.",
+        "Hence the three torques are in fixed ratios.",
         Matrix([balance[ring], balance[carrier]]),
         sun / Z_S * Matrix([Z_R, -(Z_S + Z_R)]),
-        because="the coefficient of each of the two free rates is zero",
+        because="in the sum of the powers, the coefficients of the two free rates are zero",
         named=r"\begin{bmatrix} \tau_2 \\ \tau_3 \end{bmatrix}",
     )
     d.step(
-        "Their sum is zero: the train as a whole is in balance.",
+        "The sum of the three torques is zero: the train as a whole is in equilibrium.",
         sun + balance[ring] + balance[carrier],
         0,
-        because="the rotation of the whole train as one body is a motion of the train",
+        because="the train can rotate as one rigid body",
         named=r"\tau_1 + \tau_2 + \tau_3",
     )

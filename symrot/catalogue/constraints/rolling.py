@@ -21,9 +21,9 @@ def derive() -> Derivation:
         "Mechanics "
         "for Engineers: Dynamics*, chapters 15 and 16",
         about=(
-            "A body rolls where its point of contact is at rest. That fixes the velocity of its centre by its angular "
-            "velocity, "
-            "and in the plane its place by its angle; a wheel that can turn, however, gets anywhere."
+            "A body rolls without slipping if its point of contact is at rest. This determines the velocity of its "
+            "centre from its angular velocity. In plane motion, the angle also determines the position; a wheel that "
+            "can be steered, however, can reach every position at every angle."
         ),
     )
     _ball(d)
@@ -37,17 +37,18 @@ def _ball(d: Derivation) -> None:
     d.section("A ball on a plane")
     velocity = R * OMEGA_S.cross(UP)
     contact = -R * UP
-    d.passage(r"The centre is at $R\,n$ over the point of contact, $n$ the normal of the plane, here the axis $z$.",
+    d.passage(r"Let $n$ be the normal of the plane, here the $z$ axis. The centre of the ball is at $R\,n$ from the "
+        "point of contact, and has the velocity",
             ("v", r"R\;\omega \times n"))  # fmt: skip
     d.step(
-        "With this velocity of the centre the point of contact is at rest.",
+        "With this velocity, the point of contact is at rest.",
         velocity + OMEGA_S.cross(contact),
         0,
         because=r"the vector from the centre to the point of contact is $-R\,n$",
         named=r"v + \omega \times (-R\,n)",
     )
     d.step(
-        "The top moves twice as fast.",
+        "The top of the ball moves twice as fast as the centre.",
         velocity + OMEGA_S.cross(R * UP),
         2 * velocity,
         because="the top is twice as far from the point of contact as the centre",
@@ -55,7 +56,7 @@ def _ball(d: Derivation) -> None:
         display="2 v",
     )
     d.step(
-        "Turning about the normal does not move it.",
+        "Rotation about the normal does not move the centre.",
         velocity.diff(symbols.omega_z),
         0,
         because=r"$n \times n = 0$",
@@ -63,10 +64,10 @@ def _ball(d: Derivation) -> None:
     )
     force = Matrix([symbols.F_x, symbols.F_y, symbols.F_z])
     d.step(
-        "The force of contact does no work.",
+        "The contact force does no work.",
         force.dot(velocity) + contact.cross(force).dot(OMEGA_S),
         0,
-        because="the contact force acts on a point at rest",
+        because="the contact force acts on a point that is at rest",
         named=r"F \cdot v + (-R\,n \times F) \cdot \omega",
     )
 
@@ -76,9 +77,9 @@ def _wheel(d: Derivation) -> None:
     motion = {THETA: symbols.dtheta, symbols.dtheta: symbols.ddtheta}
     rim = Matrix([R * THETA - R * sin(THETA), R - R * cos(THETA)])
     velocity = rate(rim, motion)
-    d.define("A point of the rim goes along a cycloid:", "r", rim)
+    d.define("A point of the rim moves along a cycloid:", "r", rim)
     d.step(
-        "Its velocity is as in a turn about the point of contact.",
+        "This point has the velocity of a rotation about the point of contact.",
         velocity,
         symbols.dtheta * Matrix([rim[1], R * THETA - rim[0]]),
         because="the point of contact is the instantaneous centre",
@@ -86,7 +87,8 @@ def _wheel(d: Derivation) -> None:
         display=r"\dot\theta \begin{bmatrix} y \\ R\,\theta - x \end{bmatrix}",
     )
     d.step(
-        "Where it touches, it is at rest, but not without acceleration: that is towards the centre.",
+        "When the point touches the ground, its velocity is zero, but its acceleration is not: it points toward the "
+        "centre.",
         Matrix.hstack(velocity, rate(velocity, motion)).subs(THETA, 0),
         Matrix([[0, 0], [0, R * symbols.dtheta**2]]),
         because="the centre moves on a straight line, and the point rotates about the centre",
@@ -103,15 +105,14 @@ def _slope(d: Derivation) -> None:
         gyration * acceleration / R - friction * R,
     )
     d.passage(
-        r"A round body with the moment $C$ rolls down a slope of angle $\alpha$; along it acts friction $F_x$ "
-        r"upwards. Force and "
-        r"moment give $a_x$, with $a_x = R\,\ddot\theta$:",
+        r"A round body with the moment of inertia $C$ rolls down a slope of angle $\alpha$. The friction $F_x$ acts "
+        r"uphill. With $a_x = R\,\ddot\theta$, force and moment give two equations for $a_x$ and $F_x$:",
         (r"m\,a_x", r"m g \sin\alpha - F_x"),
         (r"C\,\frac{a_x}{R}", r"F_x R"),
     )
     solution = solve(equations, (acceleration, friction), dict=True)[0]
     d.step(
-        "Its acceleration: the part of the moment that spins delays it.",
+        "The acceleration is smaller than that of a sliding body, because part of the energy goes into the rotation.",
         solution[acceleration],
         G * sin(slope) / (1 + gyration / (M * R**2)),
         because="friction is eliminated",
@@ -119,18 +120,18 @@ def _slope(d: Derivation) -> None:
     )
     speed = symbols.v_x
     d.step(
-        "Energy says the same, for friction does no work.",
+        "This acceleration also conserves the energy, since friction does no work.",
         rate(
             HALF * M * speed**2 + HALF * gyration * (speed / R) ** 2 - M * G * symbols.x * sin(slope),
             {speed: solution[acceleration], symbols.x: speed},
         ),
         0,
-        because=r"the contact force acts on a point at rest",
+        because="the contact force acts on a point that is at rest",
         named=r"\frac{d}{dt} \left( \tfrac12 m v^2 + \tfrac12 C \frac{v^2}{R^2} - m g x \sin\alpha \right)",
     )
     bodies = {"a ring": 1, "a disk": HALF, "a ball": Rational(2, 5)}
     d.step(
-        f"Shares of $g \\sin\\alpha$ for {', '.join(bodies)}: whatever mass and radius.",
+        rf"In units of $g \sin\alpha$, the accelerations of {', '.join(bodies)} do not depend on mass and radius.",
         Matrix(
             [solution[acceleration].subs(gyration, share * M * R**2) / (G * sin(slope)) for share in bodies.values()]
         ),
@@ -139,7 +140,7 @@ def _slope(d: Derivation) -> None:
         named=r"\frac{a_x}{g \sin\alpha}",
     )
     d.step(
-        r"It slips where friction, at most $\mu_f$ times the normal force, would not reach this ratio.",
+        r"The body slips if this ratio of friction to normal force exceeds the friction coefficient $\mu_f$.",
         solution[friction] / (M * G * cos(slope)),
         gyration / (gyration + M * R**2) * sin(slope) / cos(slope),
         because="the equations are solved for the friction",
@@ -148,45 +149,45 @@ def _slope(d: Derivation) -> None:
 
 
 def _nonholonomic(d: Derivation) -> None:
-    d.section("A wheel that can turn: a constraint that cannot be integrated")
+    d.section("A wheel that can be steered: a constraint that cannot be integrated")
     state = Matrix([symbols.x, symbols.y, PSI, THETA])
     roll = Matrix([R * cos(PSI), R * sin(PSI), 0, 1])
     turn = Matrix([0, 0, 1, 0])
     d.passage(
-        r"An upright wheel at $(x, y)$ with heading $\psi$ and angle $\theta$ has two motions: to roll on, and to "
-        r"turn on the spot.",
+        r"An upright wheel at $(x, y)$ with the heading $\psi$ and the angle of rotation $\theta$ has two motions: it "
+        "can roll, and it can turn on the spot (change its heading).",
         (r"\text{roll}", roll),
         (r"\text{turn}", turn),
     )
     bracket = roll.jacobian(state) * turn - turn.jacobian(state) * roll
     aside = R * Matrix([-sin(PSI), cos(PSI), 0, 0])
     d.step(
-        "Turn, roll, turn back, roll back: to second order the wheel has moved aside, which it cannot do at once.",
+        "The sequence turn, roll, turn back, roll back moves the wheel sideways, to second order. No single motion of "
+        "the wheel does this.",
         bracket,
         aside,
-        because="the Lie bracket of two motions is the change of one along the other",
+        because="the sideways motion is the Lie bracket of the two motions",
         named=r"[\text{turn}, \text{roll}] = \frac{\partial\,\text{roll}}{\partial (x, y, \psi, \theta)}\,\text{turn}",
     )
     d.step(
-        "Repeated once more, all four directions are there: every place, heading and angle can be reached, so that no "
-        "equation "
-        "between the coordinates stands for the constraint.",
+        "A second Lie bracket completes four independent directions. So the wheel can reach every position with every "
+        "heading and angle, and the constraint is not equivalent to an equation between the coordinates.",
         Matrix.hstack(roll, turn, aside, aside.jacobian(state) * turn).det(),
         -(R**2),
-        because="the determinant of the four motions is not zero",
+        because="the determinant of the four directions is not zero",
         named=r"\det \begin{bmatrix} \text{roll} & \text{turn} & [\text{turn}, \text{roll}] & [\text{turn}, "
         r"[\text{turn}, "
         r"\text{roll}]] \end{bmatrix}",
     )
     d.step(
-        "On a straight line the constraint can be integrated.",
+        r"On a straight line the constraint can be integrated: $x - R\,\theta$ is constant.",
         rate(symbols.x - R * THETA, pairs((symbols.x, THETA), (R * symbols.dtheta, symbols.dtheta))),
         0,
         because=r"$\dot x = R\,\dot\theta$",
         named=r"\frac{d}{dt} (x - R\,\theta)",
     )
     d.step(
-        "The speed of the contact along the ground is the rate of the angle times the radius.",
+        "The speed of the point of contact along the ground is the radius times the rate of the angle.",
         squared((roll * symbols.dtheta)[:2, :]),
         (R * symbols.dtheta) ** 2,
         because=r"$\cos^2\psi + \sin^2\psi = 1$",

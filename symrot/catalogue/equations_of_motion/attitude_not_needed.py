@@ -17,15 +17,20 @@ def derive() -> Derivation:
         title="When the attitude is not needed",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
         about=(
-            r"Euler's equations are closed in $\omega_b$ whenever the torque has no attitude in it: then the four "
-            "equations of the quaternion need not be integrated unless somebody asks for the attitude."
+            r"If the torque does not depend on the attitude, Euler's equations contain only $\omega_b$. Then the "
+            "angular velocity can be computed without the four equations of the quaternion; these are integrated "
+            "only if the attitude is an output."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     rotor, linear = Matrix(symbols.rotor), diag(*symbols.excess, symbols.Omega)
     laws = {
-        "without torque": (0 * OMEGA, None, "there is none"),
-        "with a torque that is constant in the body": (Matrix(symbols.torque_b), None, "its components are constants"),
+        "without torque": (0 * OMEGA, None, "the torque is zero"),
+        "with a torque that is constant in the body": (
+            Matrix(symbols.torque_b),
+            None,
+            "its components in body axes are constants",
+        ),
         "with linear damping": (-linear * OMEGA, None, r"it is a function of $\omega_b$"),
         "with quadratic damping": (-sqrt(squared(OMEGA)) * OMEGA, None, r"it is a function of $\omega_b$"),
         "with an internal rotor": (0 * OMEGA, rotor, "its angular momentum is constant in the body"),
@@ -33,24 +38,25 @@ def derive() -> Derivation:
     for what, (torque, momentum, reason) in laws.items():
         acceleration = angular_acceleration(TENSOR, OMEGA, torque, momentum)
         d.step(
-            f"Attitude does not enter the angular acceleration {what}.",
+            f"The angular acceleration {what} does not depend on the attitude.",
             acceleration.jacobian(Q),
             0,
             because=reason,
             named=r"\frac{\partial \dot\omega_b}{\partial q}",
         )
-    d.section("When it is needed")
+    d.section("When the attitude is needed")
     force = Matrix(symbols.torque_b)
     torque = quaternion_to_dcm().T * force
     d.passage(
-        "A torque that is constant in space, or comes from a direction of space, has the attitude in its components:",
+        "The body components of a torque depend on the attitude if the torque is constant in space or depends on a "
+        "direction that is fixed in space:",
         (r"\tau_b", r"R(q)^{\mathsf T} \tau_s"),
     )
     d.step(
-        "Its rate of change with the attitude is of the size of the torque itself.",
+        "The derivative of this torque with respect to a quaternion component is as large as the torque itself.",
         squared(torque.jacobian([Q[1]]).subs(dict(zip(Q, (1, 0, 0, 0), strict=True)))),
         4 * (force[1] ** 2 + force[2] ** 2),
-        because="a small rotation about axis 1 moves every vector that is not along axis 1",
+        because="a small rotation about axis 1 changes every vector that is not along axis 1",
         named=r"\left| \frac{\partial \tau_b}{\partial q_1} \right|^2_{q = 1}",
         display=r"4 \left( \tau_{s,2}^2 + \tau_{s,3}^2 \right)",
     )

@@ -18,15 +18,16 @@ def derive() -> Derivation:
         title="Euler's equations",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
         about=(
-            r"In space, torque is the rate of angular momentum: $\dot L_s = \tau_s$. In axes that turn with the body "
-            "the tensor of inertia is constant, and the rate of the axes appears instead: the gyroscopic term."
+            r"In space, the torque is the rate of the angular momentum: $\dot L_s = \tau_s$. In axes that rotate with "
+            "the body the inertia tensor is constant; instead, the rotation of the axes adds a gyroscopic term."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     unit = [unit_relation()]
     dcm_sb = Matrix(quaternion_to_dcm())
     d.passage(
-        "About the centre of mass, or a fixed point of the body, with the tensor about that point:",
+        "Angular momentum, torque and inertia tensor refer to one point: the centre of mass, or a point of the body "
+        "that is fixed in space:",
         ("I", TENSOR),
         (r"L_s", r"R\,I\,\omega_b"),
     )
@@ -38,7 +39,7 @@ def derive() -> Derivation:
     )
     moving = TENSOR * DOMEGA + OMEGA.cross(momentum_b)
     d.step(
-        "The rate of angular momentum in space, with its components along the axes of the body.",
+        "The rate of the angular momentum in space, expressed in body components, has two terms.",
         dcm_sb.T * rate(dcm_sb * momentum_b, motion),
         moving,
         because=r"the axes of the body rotate with $\dot R = R\,[\omega_b]_\times$",
@@ -55,13 +56,14 @@ def derive() -> Derivation:
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE)
     d.step(
-        "This is the torque in the body if the angular acceleration is as follows: Euler's equations, full tensor.",
+        "This rate equals the torque if the angular acceleration follows Euler's equations, here for the full inertia "
+        "tensor.",
         moving.subs(pairs(symbols.omega_rates, acceleration)),
         TORQUE,
         because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the inertia tensor has an inverse",
         board=(
             (
-                "The angular acceleration is put in; the inertia tensor and its inverse cancel:",
+                "The angular acceleration is inserted; the inertia tensor and its inverse cancel:",
                 r"\left( \tau_b - \omega_b \times I\,\omega_b \right) + \omega_b \times I\,\omega_b",
             ),
             ("The gyroscopic terms cancel:", r"\tau_b"),
@@ -77,14 +79,14 @@ def derive() -> Derivation:
     w1, w2, w3 = OMEGA
     first, second, third = TORQUE
     d.step(
-        "Along principal axes, with moments $A, B, C$, the products of inertia are gone.",
+        "Along principal axes, with moments $A, B, C$, the products of inertia vanish.",
         principal,
         Matrix([((b - c) * w2 * w3 + first) / a, ((c - a) * w3 * w1 + second) / b, ((a - b) * w1 * w2 + third) / c]),
         because="the inertia tensor is diagonal",
         named=r"\dot\omega_b",
     )
     d.step(
-        "With two equal moments, one gyroscopic term is gone.",
+        "With two equal moments, one gyroscopic term vanishes.",
         principal[2],
         third / c,
         because="the factor $A - B$ is zero",
@@ -92,7 +94,7 @@ def derive() -> Derivation:
         named=r"\dot\omega_3",
     )
     d.step(
-        "With three equal moments, all are.",
+        "With three equal moments, all gyroscopic terms vanish.",
         principal,
         TORQUE / a,
         because="the factors $B - C$, $C - A$ and $A - B$ are zero",
@@ -102,7 +104,7 @@ def derive() -> Derivation:
     d.section("Power")
     d.notation({"I": TENSOR, r"\dot\omega_b": acceleration}, pairs(symbols.omega_b, acceleration))
     d.step(
-        "The gyroscopic term does no work: the torque alone changes the kinetic energy.",
+        "The gyroscopic term does no work: only the torque changes the kinetic energy.",
         rate(OMEGA.dot(momentum_b) / 2, pairs(symbols.omega_b, acceleration)),
         OMEGA.dot(TORQUE),
         because=r"$\omega \cdot (\omega \times I\,\omega) = 0$, and the tensor is symmetric",

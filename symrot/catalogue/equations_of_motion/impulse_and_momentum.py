@@ -22,13 +22,15 @@ def derive() -> Derivation:
         source="Routh, *Dynamics of a System of Rigid Bodies*, Elementary Part, chapter IV; Beer, Johnston & Cornwell, "
         "*Vector Mechanics for Engineers: Dynamics*, chapter 17",
         about=(
-            "A blow is so short that the body does not move while it lasts, and so strong that nothing else counts: "
-            "it changes velocity and angular velocity at once. Principal axes through the centre of mass."
+            "A blow is so short that the body does not move during the blow, and so strong that all other forces can "
+            "be neglected. It changes the velocity and the angular velocity at once. All components are along the "
+            "principal axes through the centre of mass."
         ),
     )
     dv, domega = J / M, INERTIA.inv() * PLACE.cross(J)
     d.passage(
-        "The impulse $J$ at the place $d$ from the centre of mass changes momentum and angular momentum:",
+        "An impulse $J$ acts at a point of the body with the offset $d$ from the centre of mass. It changes the "
+        "momentum and the angular momentum:",
         (r"m\,\Delta v", "J"),
         (r"I\,\Delta\omega", r"d \times J"),
     )
@@ -44,9 +46,9 @@ def derive() -> Derivation:
 
 
 def _place(d: Derivation, change: Matrix) -> None:
-    d.section("The place that is struck")
+    d.section("The struck point")
     d.step(
-        "How its velocity changes: a matrix times the impulse.",
+        "The change of the struck point's velocity is a matrix times the impulse.",
         change,
         MOBILITY * J,
         because=r"$(I^{-1} (d \times J)) \times d = -[d]_\times I^{-1} [d]_\times J$",
@@ -54,17 +56,19 @@ def _place(d: Derivation, change: Matrix) -> None:
         display=r"K J, \quad K = \tfrac1m\,\mathbf{1} - [d]_\times I^{-1} [d]_\times",
     )
     d.step(
-        "The matrix is symmetric: a blow along one axis moves the place along another as much as conversely.",
+        "The matrix $K$ is symmetric: a unit impulse along axis 1 changes the velocity along axis 2 as much as a unit "
+        "impulse along axis 2 changes the velocity along axis 1.",
         MOBILITY - MOBILITY.T,
         0,
-        because=r"$[d]_\times$ is skew, $I$ is symmetric",
+        because=r"$[d]_\times$ is skew and $I$ is symmetric",
         named=r"K - K^{\mathsf T}",
     )
     d.step(
-        "And positive: the place gives way to every blow.",
+        "The matrix $K$ is positive definite: the velocity change of the struck point always has a positive component "
+        "along the impulse.",
         J.dot(MOBILITY * J),
         squared(J) / M + PLACE.cross(J).dot(INERTIA.inv() * PLACE.cross(J)),
-        because="both terms of the sum are positive",
+        because="the first term of the sum is positive, and the second is not negative",
         named=r"J \cdot K J",
         display=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
     )
@@ -77,7 +81,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         return HALF * M * squared(v) + HALF * omega.dot(INERTIA * omega)
 
     d.step(
-        "The blow does the work of the impulse on the mean of the velocities before and after, at the place struck.",
+        "The work of a blow is the impulse times the mean of the struck point's velocities before and after the blow.",
         energy(V + dv, OMEGA + domega) - energy(V, OMEGA),
         J.dot(struck + change / 2),
         because="kinetic energy is quadratic in the velocities",
@@ -85,7 +89,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         display=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
     )
     d.step(
-        "A body at rest takes up half the product of impulse and velocity gained (Kelvin).",
+        "A body that was at rest gains half the product of the impulse and the velocity of the struck point (Kelvin).",
         energy(dv, domega),
         HALF * J.dot(MOBILITY * J),
         because="the velocity before the blow is zero",
@@ -95,15 +99,16 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
 
 
 def _wall(d: Derivation, struck: Matrix) -> None:
-    d.section("Against a smooth wall")
+    d.section("Impact on a smooth wall")
     restitution = symbols.epsilon
     speed = N.dot(struck)
     give = N.dot(MOBILITY * N)
     blow = -(1 + restitution) * speed / give * N
-    d.passage(r"The wall has the unit normal $n$ and no friction, and the blow leaves $\epsilon$ of the speed:",
+    d.passage("The body hits a wall with the unit normal $n$, without friction. The coefficient of restitution "
+        r"$\epsilon$ gives the impulse:",
             ("J", r"-(1 + \epsilon)\,\frac{n \cdot v_d}{n \cdot K n}\,n"))  # fmt: skip
     d.step(
-        "The place leaves the wall with that fraction of the speed it came with.",
+        r"The struck point leaves the wall with the fraction $\epsilon$ of its normal velocity before the impact.",
         speed + N.dot(MOBILITY * blow),
         -restitution * speed,
         because=r"$n \cdot K J = -(1 + \epsilon)\,n \cdot v_d$",
@@ -112,10 +117,10 @@ def _wall(d: Derivation, struck: Matrix) -> None:
     )
     after = HALF * (speed + N.dot(MOBILITY * blow) + speed) * blow.dot(N)
     d.step(
-        r"The energy lost: none at $\epsilon = 1$.",
+        r"The impact loses this energy; nothing is lost at $\epsilon = 1$.",
         -after,
         HALF * (1 - restitution**2) * speed**2 / give,
-        because="the work of a blow is its impulse times the mean of the velocities before and after",
+        because="the work of a blow is its impulse times the mean of the velocities before and after the blow",
         relations=[squared(N) - 1],
         named=r"T - T'",
         display=r"\frac{1 - \epsilon^2}{2} \, \frac{(n \cdot v_d)^2}{n \cdot K n}",
@@ -127,18 +132,20 @@ def _percussion(d: Derivation) -> None:
     x, h = symbols.x, symbols.h
     velocity = symbols.J_y / M + symbols.J_y * h / symbols.C * x
     rest = solve(velocity, x)[0]
-    d.passage("A body at rest is struck across, at the distance $h$ from its centre of mass. On the line through both, "
-            "at $x$, it moves with",
+    d.passage("A body at rest is struck perpendicular to a line through its centre of mass, at the distance $h$ from "
+        "the centre. Just after the blow, a point at the coordinate $x$ of this line moves with the velocity",
             ("v_y", velocity))  # fmt: skip
     d.step(
-        "One point stays at rest, beyond the centre of mass: a hand that holds the body there feels nothing.",
+        "One point, on the other side of the centre of mass, stays at rest: a hand that holds the body there feels no "
+        "blow.",
         velocity.subs(x, rest),
         0,
         because=f"$x = {_latex(rest)}$",
         named=rf"v_y \left( {_latex(rest)} \right)",
     )
     d.step(
-        "The two distances have a constant product: either point is the centre of percussion of the other.",
+        "The distances of the struck point and of the point at rest from the centre of mass have a constant product. "
+        "So the two points can be exchanged: each is the centre of percussion of the other.",
         -rest * h,
         symbols.C / M,
         because="the product of the two distances is the square of the radius of gyration",
@@ -146,7 +153,7 @@ def _percussion(d: Derivation) -> None:
     )
     rod = {symbols.C: M * symbols.L**2 / 12}
     d.step(
-        "A rod of length $L$ that is held at its end: struck at two thirds of its length.",
+        "If a rod of length $L$ is held at its end, the centre of percussion is at two thirds of its length.",
         symbols.L / 2 + solve((rest + symbols.L / 2).subs(rod), h)[0],
         2 * symbols.L / 3,
         because=r"$C = m L^2 / 12$ and $x = -L/2$",

@@ -25,9 +25,9 @@ def derive() -> Derivation:
         source="Whittaker, *A Treatise on the Analytical Dynamics of Particles and Rigid Bodies*, 4th ed., section 69; "
         "Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 5.5",
         about=(
-            r"Written in Euler angles, kinetic energy gives Lagrange's equations. They are Euler's equations, "
-            r"multiplied "
-            r"by $B^{\mathsf T}$ of $\omega_b = B \dot q$: the two are equivalent wherever $B$ has an inverse."
+            "Lagrange's equations for the kinetic energy in Euler angles are Euler's equations multiplied by "
+            r"$B^{\mathsf T}$, where $\omega_b = B \dot q$. The two sets of equations are equivalent wherever $B$ has "
+            "an inverse."
         ),
     )
     _transposition(d)
@@ -37,11 +37,11 @@ def derive() -> Derivation:
 
 
 def _transposition(d: Derivation) -> None:
-    d.section("The rates of the axes of the turns")
+    d.section("Lagrange's operator on a product with omega")
     d.passage(
-        r"Let $\mu$ be any vector of constant components in the body. The product $\mu \cdot \omega = \mu \cdot B "
-        r"\dot q$ is "
-        "put into Lagrange's operator, for every sequence; the reason is the same for all and stands at the first:",
+        r"Let $\mu$ be any vector with constant body components. Lagrange's operator $E$ is applied to the product "
+        r"$\mu \cdot \omega = \mu \cdot B \dot q$, for every sequence. The reason is the same for all sequences and "
+        "is printed for the first sequence only:",
         (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
     )
     for sequence in INTRINSIC_SEQUENCES:
@@ -58,20 +58,20 @@ def _transposition(d: Derivation) -> None:
             display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
         )
     d.passage(
-        r"In $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes: that adds $B^{\mathsf "
-        r"T} I "
-        r"\dot\omega$. This is why gyroscopic terms appear in one form and none in the other."
+        r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes "
+        r"with time; this adds the term $B^{\mathsf T} I \dot\omega$. The other term, $B^{\mathsf T} (\omega \times "
+        r"I\,\omega)$, is the gyroscopic term."
     )
 
 
 def _equations(d: Derivation) -> None:
-    d.section("The whole equation, ZXZ")
+    d.section("The complete equation for ZXZ")
     body = rate_jacobian("ZXZ")
     omega = body * RATES
     d.notation({"B": body.as_immutable(), r"\omega": omega, "I": TENSOR}, MOTION)
     d.notation({f"omega_{n + 1}".replace("omega", r"\omega"): omega[n] for n in range(3)})
     d.step(
-        "Lagrange's operator on the kinetic energy, full tensor.",
+        "Lagrange's operator is applied to the kinetic energy with the full inertia tensor.",
         lagrange(omega.dot(TENSOR * omega) / 2),
         body.T * (TENSOR * rate(omega, MOTION) + omega.cross(TENSOR * omega)),
         because="both sides are written out in angles, rates and accelerations, and all their terms agree",
@@ -80,7 +80,7 @@ def _equations(d: Derivation) -> None:
     )
     principal = Matrix.diag(*symbols.principal)
     d.step(
-        "The third of them, for the spin angle, is Euler's third equation as it stands.",
+        "Lagrange's equation for the spin angle is Euler's third equation.",
         lagrange(omega.dot(principal * omega) / 2)[2],
         symbols.C * rate(omega, MOTION)[2] - (symbols.A - symbols.B) * omega[0] * omega[1],
         because=r"the last column of $B$ is $e_3$",
@@ -94,7 +94,7 @@ def _torques(d: Derivation) -> None:
     body = rate_jacobian("ZXZ")
     d.notation({r"\tau": TORQUE, r"\dot q": RATES, "Q": body.T * TORQUE, r"\omega": body * RATES})
     d.step(
-        "The generalised forces are the torques about the axes of the turns.",
+        "The generalised forces $Q$ are the torques about the axes of the three rotations.",
         TORQUE.dot(body * RATES),
         (body.T * TORQUE).dot(RATES),
         because="the power of the torque is the same in both descriptions",
@@ -102,7 +102,8 @@ def _torques(d: Derivation) -> None:
         display=r"\left( B^{\mathsf T} \tau \right) \cdot \dot q = Q \cdot \dot q",
     )
     d.step(
-        r"Hence $E = Q$ gives $I\,\dot\omega + \omega \times I\,\omega = \tau$, where the angles are not locked.",
+        r"Hence $E = Q$ gives Euler's equations $I\,\dot\omega + \omega \times I\,\omega = \tau$ at every attitude "
+        "without gimbal lock.",
         (body.inverse.T * body.T),
         eye(3),
         because=r"$B^{\mathsf T}$ has an inverse where $\sin\theta \neq 0$",
@@ -110,9 +111,8 @@ def _torques(d: Derivation) -> None:
     )
     height = symbols.W * symbols.c_3 * rate_jacobian("ZXZ")[2, 0]
     d.step(
-        "For a weight on the axis of symmetry, at the height $c_3 \\cos\\theta$ over the fixed point, only the "
-        "nutation "
-        "has a force.",
+        r"For a weight on the symmetry axis, at the height $c_3 \cos\theta$ above the fixed point, only the "
+        "generalised force of the nutation is not zero.",
         Matrix([-height.diff(angle) for angle in ANGLES]),
         Matrix([0, symbols.W * symbols.c_3 * sin(symbols.theta), 0]),
         because=r"the potential is $W c_3 \cos\theta$",

@@ -18,8 +18,9 @@ def derive() -> Derivation:
         title="Rotation about one principal axis",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
         about=(
-            "If angular velocity and torque lie along one principal axis, they stay there. The motion is then one "
-            r"angle with $I \ddot\theta = \tau$, and the attitude a turn by that angle from where it started."
+            "If angular velocity and torque are along the same principal axis, the angular velocity stays along this "
+            r"axis. The motion is then described by one angle with $I \ddot\theta = \tau$, and the attitude is the "
+            "initial attitude followed by a rotation by this angle."
         ),
     )
     inertia = diag(*symbols.principal)
@@ -28,20 +29,21 @@ def derive() -> Derivation:
         torque = [symbols.torque_b[i] if i == number else 0 for i in range(3)]
         expected = [t / moment for t, moment in zip(torque, symbols.principal, strict=True)]
         d.step(
-            f"Along the {place} principal axis nothing pulls the rotation out of it.",
+            f"A rotation about the {place} principal axis stays about this axis: the other two components of the "
+            "angular acceleration are zero.",
             angular_acceleration(inertia, Matrix(along), Matrix(torque)),
             Matrix(expected),
             because="angular velocity and angular momentum are parallel, so the gyroscopic term is zero",
             named=r"\dot\omega_b",
         )
 
-    d.section("The attitude is one angle")
+    d.section("One angle describes the attitude")
     theta, dtheta, axis = symbols.theta, symbols.dtheta, Matrix([0, 0, 1])
     turn = Matrix([cos(theta / 2), *(sin(theta / 2) * axis)])
     start = Matrix(symbols.quaternion)
     attitude = Matrix(quaternion_product(start, turn))
     d.step(
-        r"A turn by $\theta$ about that axis, from the attitude $q$ at the start, satisfies the quaternion equation.",
+        r"The initial attitude $q$ followed by a rotation by $\theta$ about axis 3 satisfies the quaternion equation.",
         rate(attitude, {theta: dtheta}),
         Matrix(quaternion_product(attitude, [0, *(dtheta * axis)])) / 2,
         because=r"$\theta$ changes at the rate $\omega_3$",
@@ -50,7 +52,7 @@ def derive() -> Derivation:
     )
     dcm_start, turning = Matrix(quaternion_to_dcm()), elementary_rotation(2, theta)
     d.step(
-        "The axis keeps its direction in space.",
+        "The axis of rotation keeps its direction in space.",
         rate(dcm_start * turning * axis, {theta: dtheta}),
         0,
         because="the body rotates about this axis",
@@ -58,10 +60,10 @@ def derive() -> Derivation:
         named=r"\frac{d}{dt}\,R\,e_3",
     )
 
-    d.section("Torques that stay on the axis")
+    d.section("Torques along the axis")
     vector = Matrix([0, 0, symbols.tau_3])
     d.step(
-        "A torque that is constant in space and along the axis.",
+        "A torque that is constant in space and along the axis is also constant in the body.",
         (dcm_start * turning).T * (dcm_start * vector),
         vector,
         because="the axis of rotation is fixed",
@@ -72,7 +74,8 @@ def derive() -> Derivation:
     beside = Matrix([symbols.c_1, symbols.c_2, 0])
     gravity = symbols.W * beside.cross(turning.T * level)
     d.step(
-        "Gravity, when the axis is level and the centre of mass beside it: a pendulum.",
+        "If the axis is horizontal and the centre of mass is beside it, gravity has no torque about the other two "
+        "axes: the body is a pendulum.",
         gravity[:2, :],
         0,
         because="the arm and the weight lie in the plane of the motion",
@@ -80,11 +83,14 @@ def derive() -> Derivation:
     )
     spinning = Matrix([0, 0, symbols.omega_3])
     d.step(
-        "An internal rotor along the axis adds nothing.",
+        "The angular momentum of a rotor along the axis causes no torque.",
         angular_acceleration(inertia, spinning, Matrix([0, 0, 0]), Matrix([0, 0, symbols.h_3])),
         0,
         because="angular velocity and the angular momentum of the rotor are parallel",
         named=r"\dot\omega_b",
     )
-    d.passage("Damping is along the angular velocity, component by component, and so stays on the axis too.")
+    d.passage(
+        "Each component of a damping torque depends on the same component of the angular velocity, so this "
+        "torque is along the axis too."
+    )
     return d

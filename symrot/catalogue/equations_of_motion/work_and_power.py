@@ -20,9 +20,8 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 34; Beer, Johnston & Cornwell, *Vector Mechanics for "
         "Engineers: Dynamics*, chapter 17",
         about=(
-            "What forces on a body do in a unit of time is the product of their sum with the velocity of a point, and "
-            "of "
-            "their moment about it with the angular velocity. It is the rate of the kinetic energy."
+            "The power of forces on a body is the resultant force times the velocity of a reference point, plus the "
+            "moment about this point times the angular velocity. This power is the rate of the kinetic energy."
         ),
     )
     _forces(d)
@@ -37,7 +36,8 @@ def _forces(d: Derivation) -> None:
     d.notation({"v_d": V + OMEGA.cross(OTHER)})
     second = Matrix(symbols.torque_b)
     d.step(
-        "A force at $r$ from a point that moves with $v$.",
+        "The power of a force at $r$ from a reference point with the velocity $v$ is the power of the force at the "
+        "reference point plus the power of its moment.",
         FORCE.dot(V + OMEGA.cross(POINT)),
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
         because="the factors of a triple product may be permuted cyclically",
@@ -45,7 +45,7 @@ def _forces(d: Derivation) -> None:
         display=r"F \cdot v + (r \times F) \cdot \omega",
     )
     d.step(
-        "A couple, $F$ at $r$ and $-F$ at $d$: its power does not depend on the point.",
+        "The power of a couple, $F$ at $r$ and $-F$ at $d$, does not depend on the reference point.",
         FORCE.dot(V + OMEGA.cross(POINT)) - FORCE.dot(V + OMEGA.cross(OTHER)),
         (POINT - OTHER).cross(FORCE).dot(OMEGA),
         because="the velocity of the reference point cancels",
@@ -53,10 +53,10 @@ def _forces(d: Derivation) -> None:
         display=r"\left( (r - d) \times F \right) \cdot \omega",
     )
     d.step(
-        "Forces between two points of the body, along their line, do no work.",
+        "Internal forces between two points of the body, along the line between them, do no work.",
         (symbols.epsilon * (POINT - OTHER)).dot(OMEGA.cross(POINT) - OMEGA.cross(OTHER)),
         0,
-        because="the distance of the points does not change",
+        because="the distance between the points does not change",
         named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
     )
     dcm_sb = Matrix(quaternion_to_dcm())
@@ -75,12 +75,12 @@ def _forces(d: Derivation) -> None:
 
 
 def _energy(d: Derivation) -> None:
-    d.section("It is the rate of the kinetic energy")
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.section("Power is the rate of the kinetic energy")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     motion = pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, TORQUE))
     d.notation({"I": TENSOR, r"\tau": TORQUE}, motion)
     d.step(
-        "Of turning: the torque's power, for any tensor.",
+        "The rate of the rotational energy is the power of the torque, for any inertia tensor.",
         rate(HALF * OMEGA.dot(TENSOR * OMEGA), motion),
         TORQUE.dot(OMEGA),
         because=r"the gyroscopic term is perpendicular to $\omega$",
@@ -90,7 +90,7 @@ def _energy(d: Derivation) -> None:
     falling = pairs(symbols.velocity, FORCE / symbols.m)
     d.notation({}, falling)
     d.step(
-        "Of the centre of mass: the force's power.",
+        "The rate of the translational energy is the power of the force.",
         rate(HALF * symbols.m * squared(V), falling),
         FORCE.dot(V),
         because=r"$m\,\dot v = F$",
@@ -98,7 +98,7 @@ def _energy(d: Derivation) -> None:
         display=r"F \cdot v",
     )
     d.step(
-        "About a fixed axis with a constant torque: work is torque times angle.",
+        "For rotation about a fixed axis under a constant torque, the work is the torque times the angle.",
         rate(
             HALF * symbols.C * symbols.omega_3**2 - symbols.tau_3 * symbols.psi,
             {symbols.omega_3: symbols.tau_3 / symbols.C, symbols.psi: symbols.omega_3},
@@ -110,12 +110,13 @@ def _energy(d: Derivation) -> None:
 
 
 def _kinds(d: Derivation) -> None:
-    d.section("Torques that keep energy, and torques that take it")
+    d.section("Torques with and without a loss of energy")
     fixed, arm, dcm_sb = Matrix(symbols.normal), Matrix(symbols.center_of_mass), Matrix(quaternion_to_dcm())
     down = dcm_sb.T * fixed
     d.notation({"c": arm, r"\gamma": down}, attitude_rates())
     d.step(
-        "A weight: its power is the loss of potential energy, so their sum is kept.",
+        "The power of a weight is minus the rate of its potential energy, so the sum of kinetic and potential energy "
+        "is constant.",
         rate(-symbols.W * arm.dot(down), attitude_rates()),
         -(symbols.W * arm.cross(down)).dot(OMEGA),
         because=r"the direction of gravity $\gamma$ rotates backwards in the body, $\dot\gamma = \gamma \times \omega$",
@@ -126,7 +127,8 @@ def _kinds(d: Derivation) -> None:
     d.notation({"h": Matrix(symbols.rotor)})
     rotor = Matrix(symbols.rotor)
     d.step(
-        "A rotor that turns at a constant rate relative to the body: no power.",
+        "A rotor with a constant speed relative to the body exchanges no energy with the motion of the body: its "
+        "torque has no power.",
         (-OMEGA.cross(rotor)).dot(OMEGA),
         0,
         because="the torque of the rotor on the body is perpendicular to the angular velocity",
@@ -134,7 +136,7 @@ def _kinds(d: Derivation) -> None:
     )
     linear = diag(*symbols.damping)
     d.step(
-        "Damping with positive coefficients takes energy at every motion.",
+        "Damping with positive coefficients takes energy from every rotation.",
         (-linear * OMEGA).dot(OMEGA),
         -sum(b * w**2 for b, w in zip(symbols.damping, OMEGA, strict=True)),
         because="the power is minus a sum of squares",

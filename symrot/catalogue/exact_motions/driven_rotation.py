@@ -25,9 +25,9 @@ def derive() -> Derivation:
         source="Leimanis, *The General Problem of the Motion of Coupled Rigid Bodies about a Fixed Point*, section "
         "15; for the last section Zener, *Proc. R. Soc. A* 137 (1932) 696",
         about=(
-            "A motor and a brake about a principal axis: the rate and the angle are elementary functions of time. In a "
-            "symmetric body that also turns across the axis, the transverse angular velocity turns by an angle that "
-            "grows with the square of time."
+            "Under a motor and a brake about a principal axis, rate and angle of the rotation are elementary "
+            "functions of time. If a symmetric body also rotates about a transverse axis, its transverse angular "
+            "velocity rotates by an angle that is quadratic in time."
         ),
     )
     _pushed(d)
@@ -46,20 +46,20 @@ def derive() -> Derivation:
 def _pushed(d: Derivation) -> None:
     d.section("Constant torque")
     d.passage(
-        r"The body turns [about one principal axis](planar_motion.md), of moment $C$, under the torque $\tau_3$ along "
-        r"it, from $\omega_3$ at $t = 0$.",
+        "The body rotates [about one principal axis](planar_motion.md) with the moment $C$, under the torque "
+        r"$\tau_3$ along this axis. Its rate is $\omega_3$ at $t = 0$.",
         (r"\omega_3(t)", STEADY),
         (r"\theta(t)", ANGLE),
     )
     d.step(
-        "The rate obeys the equation of motion.",
+        "The rate satisfies the equation of motion.",
         C * STEADY.diff(T),
         PUSH,
         because="the angular velocity is linear in time",
         named=r"C\,\dot\omega_3(t)",
     )
     d.step(
-        "It is the rate of the angle.",
+        "The derivative of the angle is the rate.",
         ANGLE.diff(T),
         STEADY,
         because="the angle, which is quadratic in time, is differentiated",
@@ -71,7 +71,7 @@ def _pushed(d: Derivation) -> None:
     turn = Matrix([cos(ANGLE / 2), 0, 0, sin(ANGLE / 2)])
     attitude = Matrix(quaternion_product(q, turn))
     d.step(
-        "The attitude: a turn by that angle, from the attitude $q$ at the start.",
+        r"The attitude is the initial attitude $q$ followed by a rotation by the angle $\theta(t)$.",
         attitude.diff(T),
         quaternion_rates("body", attitude) * (STEADY * AXIS),
         because=r"the axis is fixed in the body, and in space",
@@ -91,12 +91,12 @@ def _braked(d: Derivation) -> None:
     d.section("With linear damping")
     speed, angle, decay = _decay()
     d.passage(
-        r"A brake adds the torque $-b_3\,\omega_3$. The rate tends to $\tau_3 / b_3$:",
+        r"A brake adds the torque $-b_3\,\omega_3$. The rate then approaches $\tau_3 / b_3$:",
         (r"\omega_3(t)", speed),
         (r"\theta(t)", angle),
     )
     d.step(
-        "The rate obeys the equation of motion.",
+        "The rate satisfies the equation of motion with damping.",
         C * speed.diff(T),
         PUSH - DRAG * speed,
         because="an exponential is its own derivative",
@@ -104,7 +104,7 @@ def _braked(d: Derivation) -> None:
         display=r"\tau_3 - b_3\,\omega_3(t)",
     )
     d.step(
-        "It is the rate of the angle.",
+        "The derivative of the angle is the rate.",
         angle.diff(T),
         speed,
         because="the exponential is differentiated in the same way",
@@ -112,7 +112,7 @@ def _braked(d: Derivation) -> None:
         display=r"\omega_3(t)",
     )
     d.step(
-        "Both start as they must.",
+        "Rate and angle have the right initial values.",
         Matrix([speed, angle]).subs(T, 0),
         Matrix([START, 0]),
         because="$e^0 = 1$",
@@ -120,8 +120,9 @@ def _braked(d: Derivation) -> None:
     )
     x = symbols.v
     d.passage(
-        r"For weak damping these are differences of large numbers. With $x = -b_3 t / C$ and the functions "
-        r"$f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$, which are regular at $x = 0$, they are not:"
+        "For weak damping, both formulas are differences of large numbers, which lose digits. This is avoided by the "
+        "functions $f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$ of $x = -b_3 t / C$, which are regular at $x = "
+        "0$:"
     )
     first, second = (
         (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
@@ -130,7 +131,7 @@ def _braked(d: Derivation) -> None:
     power = -DRAG * T / C
     d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
     d.step(
-        "The same, in a form that holds without damping too.",
+        "The same rate and angle are written with $f_1$ and $f_2$; these formulas also hold without damping.",
         Matrix([speed, angle]),
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
         because="the equation is multiplied by the denominators",
@@ -139,8 +140,8 @@ def _braked(d: Derivation) -> None:
         r"f_2 \end{bmatrix}",
     )
     d.step(
-        r"The values at $x = 0$, by the rule of de l'Hospital, $f_1 = 1$ and $f_2 = \tfrac12$, give the motion without "
-        "damping.",
+        r"At $x = 0$ the functions have the limits $f_1 = 1$ and $f_2 = \tfrac12$ (l'Hospital's rule), which give the "
+        "motion without damping.",
         Matrix([(exp(x) - 1).diff(x) / x.diff(x), (exp(x) - 1 - x).diff(x, 2) / (x**2).diff(x, 2)]).subs(x, 0),
         Matrix([1, HALF]),
         because="$e^0 = 1$",
@@ -149,20 +150,21 @@ def _braked(d: Derivation) -> None:
 
 
 def _across(d: Derivation) -> None:
-    d.section("A symmetric body that turns across the axis as well")
+    d.section("A symmetric body that also rotates about a transverse axis")
     first, second = symbols.omega_1, symbols.omega_2
     turn = (C - A) / A * symbols.theta
     d.notation({r"\theta": symbols.theta})
     omega = Matrix([first * cos(turn) - second * sin(turn), first * sin(turn) + second * cos(turn), symbols.Omega])
     d.passage(
-        r"Moments $A, A, C$; $\Omega$ is the rate $\omega_3(t)$ and $\theta$ its angle, of either section above. From "
-        r"$\omega_1, \omega_2$ at the start:",
+        r"The moments are $A, A, C$. $\Omega$ is the rate $\omega_3(t)$ and $\theta$ the angle of one of the two "
+        r"sections above. With the initial values $\omega_1, \omega_2$:",
         (r"\omega(t)", omega),
         (r"\omega_1(t)", omega[0]),
         (r"\omega_2(t)", omega[1]),
     )
     d.step(
-        "Across the axis Euler's equations hold, whatever the rate: the torque is along the axis.",
+        r"The transverse components satisfy Euler's equations for every rate $\Omega$, because the torque is along "
+        "the axis.",
         Matrix(rate(omega, {symbols.theta: symbols.Omega})[:2]),
         Matrix(angular_acceleration(diag(A, A, C), omega, PUSH * AXIS)[:2]),
         because=r"the phase grows at the rate $\frac{C - A}{A}\,\Omega$",
@@ -171,7 +173,8 @@ def _across(d: Derivation) -> None:
     )
     d.notation({r"\theta(t)": ANGLE})
     d.step(
-        "With a constant torque the phase is quadratic in time: integrals over it are those of Fresnel.",
+        "Under a constant torque the phase is quadratic in time. Integrals over the transverse components are "
+        "therefore Fresnel integrals.",
         ((C - A) / A * ANGLE).diff(T, 2),
         (C - A) / (A * C) * PUSH,
         because="the angular acceleration of the phase is twice the coefficient of $t^2$",
@@ -180,14 +183,13 @@ def _across(d: Derivation) -> None:
 
 
 def _attitude(d: Derivation) -> None:
-    d.section("Its attitude")
+    d.section("The attitude of this body")
     across, sweep, growth = symbols.omega_1, symbols.Omega, symbols.domega_3
     d.passage(
-        r"In axes that turn with the transverse angular velocity, of length $\omega_1$, the angular velocity of the "
-        r"body "
-        r"is $(\omega_1, 0, \Omega)$ with $\Omega = \frac{C}{A}\,\omega_3(t)$, which is linear in time. The attitude "
-        r"of "
-        r"these axes as two complex numbers is $\alpha = q_0 + i q_3$ and $\beta = q_1 + i q_2$."
+        r"Consider axes that rotate with the transverse angular velocity, which has the length $\omega_1$. In these "
+        r"axes the angular velocity is $(\omega_1, 0, \Omega)$ with $\Omega = \frac{C}{A}\,\omega_3(t)$, which is "
+        r"linear in time. Two complex numbers $\alpha = q_0 + i q_3$ and $\beta = q_1 + i q_2$ describe the attitude "
+        "of these axes."
     )
     q0, q1, q2, q3 = symbols.quaternion
     speeds = quaternion_rates("body") * Matrix([across, 0, sweep])
@@ -195,7 +197,7 @@ def _attitude(d: Derivation) -> None:
     first, second = q0 + I * q3, q1 + I * q2
     d.notation({r"\alpha": first, r"\beta": second, "i": I}, motion)
     d.step(
-        "They obey the equations of a two-level system that is swept through resonance.",
+        "The two numbers satisfy the equations of a two-level system that is swept through resonance.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
         because="the rates of the quaternion are written as two complex equations",
@@ -205,7 +207,8 @@ def _attitude(d: Derivation) -> None:
         r"\end{bmatrix}",
     )
     d.step(
-        r"One alone obeys Weber's equation, $\dot\Omega$ being constant: parabolic cylinder functions of time.",
+        r"Since $\dot\Omega$ is constant, $\alpha$ alone satisfies Weber's equation. Its solutions are parabolic "
+        "cylinder functions of time.",
         rate(rate(first, motion), motion),
         (I * growth / 2 - (sweep**2 + across**2) / 4) * first,
         because="the second complex number is eliminated",
@@ -229,16 +232,18 @@ def _by_kummer(d: Derivation) -> None:
     }
     first, second = phase * value, 2 * I * sweep / across * phase * slope
     d.passage(
-        r"Kummer's function $M = {}_1F_1(a; \tfrac12; z)$ and its derivative $N = dM/dz$ obey $z \frac{dN}{dz} = a M - "
-        r"(\tfrac12 - z) N$. With $a = -\frac{i \omega_1^2}{8 \dot\Omega}$, $z = -\frac{i \Omega^2}{2 \dot\Omega}$, so "
-        r"that $\dot z = -i \Omega$, and $E = e^{i \Omega^2 / 4 \dot\Omega}$, so that $\dot E = \frac{i}{2} \Omega E$:",
+        r"Kummer's function $M = {}_1F_1(a; \tfrac12; z)$ and its derivative $N = dM/dz$ satisfy $z \frac{dN}{dz} = a "
+        r"M - (\tfrac12 - z) N$. Let $a = -\frac{i \omega_1^2}{8 \dot\Omega}$, $z = -\frac{i \Omega^2}{2 \dot\Omega}$ "
+        r"with $\dot z = -i \Omega$, and $E = e^{i \Omega^2 / 4 \dot\Omega}$ with $\dot E = \frac{i}{2} \Omega E$. "
+        "Define",
         (r"\alpha", first),
         (r"\beta", second),
     )
     d.notation({r"\alpha": first, r"\beta": second, "M": value, "N": slope, "E": phase, "i": I}, motion)
     d.step(
-        r"They are the attitude of axes that start along those of space at $\Omega = 0$, where $\alpha = 1$ and "
-        r"$\beta = 0$. From any other start the attitude is a constant quaternion times this one.",
+        r"These $\alpha$ and $\beta$ satisfy the equations. They describe axes that coincide with the axes of space "
+        r"at $\Omega = 0$, where $\alpha = 1$ and $\beta = 0$. For any other initial attitude, the quaternion is a "
+        "constant quaternion times this one.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
         because="Kummer's equation gives $dN/dz$",
@@ -251,12 +256,12 @@ def _by_kummer(d: Derivation) -> None:
     swept = {sweep: growth, speed: sweep * growth / speed, area: growth / speed}
     angle = (sweep * speed + across**2 * area) / (2 * growth)
     d.passage(
-        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of these axes and $Z = \operatorname{arsinh} "
-        r"(\Omega/\omega_1)$, so that $\dot Z = \dot\Omega / S$."
+        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of rotation of these axes, and let $Z = "
+        r"\operatorname{arsinh} (\Omega/\omega_1)$, with $\dot Z = \dot\Omega / S$."
     )
     d.notation({"S": speed, "Z": area}, swept)
     d.step(
-        "The integral of that rate is elementary: the phase of a slow sweep.",
+        "The integral of $S$ over time is elementary. It is the phase of a slow sweep.",
         rate(angle, swept),
         speed,
         because=r"$S^2 = \Omega^2 + \omega_1^2$",
@@ -281,19 +286,19 @@ def _far(d: Derivation) -> None:
     }
     n = Matrix([kappa / r * a, kappa / r**3 * c, x / r * b])
     d.passage(
-        r"In the unit of time $\dot\Omega^{-1/2}$ the body turns at $(\kappa, 0, x)$, $x$ the time; $r^2 = x^2 + "
-        r"\kappa^2$, $v = 1/r^2$. Let $a, b, c$ be series in $v$ with $c = -(a + 2 v a')$, $b - a = -v^2 (3 c + 2 v "
-        r"c')$ and $2 (1 - \kappa^2 v) b' = \kappa^2 (b + c)$: from $a = b = 1$ at $v = 0$ each coefficient follows "
-        "from those before.",
+        r"Let the unit of time be $\dot\Omega^{-1/2}$ and $x$ the time, so that the angular velocity is $(\kappa, 0, "
+        r"x)$. Let $r^2 = x^2 + \kappa^2$ and $v = 1/r^2$. Let $a, b, c$ be power series in $v$ with $c = -(a + 2 v "
+        r"a')$, $b - a = -v^2 (3 c + 2 v c')$ and $2 (1 - \kappa^2 v) b' = \kappa^2 (b + c)$. Starting from $a = b = "
+        "1$ at $v = 0$, these equations give each coefficient from the coefficients before it. Define",
         ("n", n),
     )
     d.notation({"n": n, r"\kappa": kappa, "r": r, "x": x}, motion)
     d.step(
-        "This vector is at rest in space. Far from resonance it follows the axis of rotation, and the body turns about "
-        "it by the phase above, but for a small angle.",
+        "The vector $n$ is fixed in space. Far from resonance it is close to the axis of rotation, and the body "
+        "rotates about it by the phase above, except for a small angle.",
         rate(n, motion),
         n.cross(Matrix([kappa, 0, x])),
-        because="a vector at rest in space rotates backwards in the body",
+        because="in body components, a vector that is fixed in space rotates backwards",
         relations=[r**2 - x**2 - kappa**2],
         named=r"\frac{dn}{dx}",
         display=r"n \times (\kappa, 0, x)",
@@ -304,17 +309,17 @@ def _far(d: Derivation) -> None:
     squares = first**2 + second**2 + third**2
     spin = r * third + tilt * second + (second * turning[first] - first * turning[second]) / (1 + third)
     d.passage(
-        r"In axes turned about the second one until the third lies along $(\kappa, 0, x)$ the body turns at $(0, "
-        r"\dot\phi, r)$, $\dot\phi = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
-        r"turned on by the shortest way until the third lies along $m$ turn about it alone, at the rate $m \cdot "
-        r"\omega + (m_2 \dot m_1 - m_1 \dot m_2)/(1 + m_3)$."
+        r"Rotate the axes about the second axis until the third axis is along $(\kappa, 0, x)$. In the new axes the "
+        r"angular velocity is $(0, \dot\phi, r)$ with $\dot\phi = -\kappa/r^2$, and $n$ becomes a vector $m$ near the "
+        "third axis. Then rotate the axes by the smallest angle until the third axis is along $m$. These axes rotate "
+        r"about $m$ only, at the rate $m \cdot \omega + (m_2 \dot m_1 - m_1 \dot m_2)/(1 + m_3)$."
     )
     d.notation({"m": Matrix([first, second, third]), "r": r}, turning)
     d.step(
-        "It exceeds $r$ by the rate of the small angle.",
+        "This rate is $r$ plus the rate of a small angle.",
         spin,
         r + tilt * second / (1 + third),
-        because="$m$ has length 1 and is at rest in space",
+        because="$m$ has length 1 and is fixed in space",
         relations=[squares - 1],
         named=r"m \cdot \omega + \frac{m_2 \dot m_1 - m_1 \dot m_2}{1 + m_3}",
         display=r"r + \frac{\dot\phi\,m_2}{1 + m_3}",

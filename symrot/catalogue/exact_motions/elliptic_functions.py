@@ -17,9 +17,10 @@ def derive() -> Derivation:
         title="Jacobi's elliptic functions by their derivatives",
         source="Whittaker & Watson, *A Course of Modern Analysis*, 4th ed., chapters 21 and 22",
         about=(
-            "What the exact motions of rigid bodies use of the elliptic functions, each from the one before: three "
-            "derivatives, the addition theorems, the zeta function, and how the argument of a theta function turns. "
-            "The derivatives are taken as the definition; nothing is taken from tables."
+            "This page proves the properties of elliptic functions that the exact motions of rigid bodies need: three "
+            "derivatives, the addition theorems, the zeta function, and the rate of the argument of a theta function. "
+            "The three derivatives are the definition; each other property follows from the properties before it, "
+            "without tables."
         ),
     )
     _definition(d)
@@ -40,15 +41,16 @@ def _definition(d: Derivation) -> None:
         derivatives(),
     )
     d.passage(
-        r"The functions $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ of $u$, with the parameter $\mu = k^2$, start at "
-        "$0, 1, 1$ for $u = 0$, and obey",
+        r"The functions $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ of $u$ with the parameter $\mu = k^2$ have the values "
+        "$0, 1, 1$ at $u = 0$ and the derivatives",
         *((rf"\frac{{d}}{{du}}\,\mathrm{{{name}}}", value) for name, value in derivatives().items()),
     )
     d.step(
-        "Two sums of squares are constant, hence what they are at the start: 1.",
+        "Two sums of squares are constant, so they keep the value 1 that they have at $u = 0$.",
         Matrix([rate(CN**2 + SN**2, derivatives()), rate(DN**2 + MU * SN**2, derivatives())]),
         0,
-        because="the derivative of each function is a multiple of the other two, and the two terms cancel",
+        because="the derivative of each function is a multiple of the product of the other two, and the two terms of "
+        "each sum cancel",
         named=r"\frac{d}{du} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
@@ -58,7 +60,7 @@ def _sums(d: Derivation) -> None:
     d.section("Sums of arguments")
     s, c, dn = shifted()
     d.passage(
-        r"Let $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ be the values at a fixed $w$, real or not, and define",
+        r"Let $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ be the values at a fixed real or complex $w$, and define",
         (r"S", s),
         (r"\hat C", c),
         (r"\hat D", dn),
@@ -68,9 +70,16 @@ def _sums(d: Derivation) -> None:
     for name, here, there in zip(("sn", "cn", "dn"), (s, c, dn), other, strict=True):
         d.notation({rf"\mathrm{{{name}}}(u + w)": here, rf"\mathrm{{{name}}}(u - w)": there, r"\Delta": BELOW})
     for claim, name, left, right, value in (
-        ("They obey the same three equations in $u$. The first:", "S", s, c * dn, r"\hat C\,\hat D"),
-        ("The second:", r"\hat C", c, -s * dn, r"-S\,\hat D"),
-        ("The third:", r"\hat D", dn, -MU * s * c, r"-\mu\,S\,\hat C"),
+        (
+            "The three functions have the same derivatives with respect to $u$ as sn, cn and dn. The derivative of "
+            "$S$ is:",
+            "S",
+            s,
+            c * dn,
+            r"\hat C\,\hat D",
+        ),
+        (r"The derivative of $\hat C$ is:", r"\hat C", c, -s * dn, r"-S\,\hat D"),
+        (r"The derivative of $\hat D$ is:", r"\hat D", dn, -MU * s * c, r"-\mu\,S\,\hat C"),
     ):
         d.step(
             claim,
@@ -83,18 +92,20 @@ def _sums(d: Derivation) -> None:
             display=value,
         )
     d.step(
-        r"And they start at $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$. A system of differential equations has one "
-        r"solution with a given start: $S, \hat C, \hat D$ are sn, cn, dn of $u + w$. These are the addition theorems.",
+        r"At $u = 0$ the three functions have the values $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$. A system of "
+        r"differential equations has only one solution with given initial values, so $S, \hat C, \hat D$ are sn, cn, "
+        "dn of $u + w$. These are the addition theorems.",
         Matrix([s, c, dn]).subs({SN: 0, CN: 1, DN: 1}),
         Matrix([SN_W, CN_W, DN_W]),
         because="at $u = 0$ sn is 0, and cn and dn are 1",
         named=r"\begin{bmatrix} S \\ \hat C \\ \hat D \end{bmatrix}_{u = 0}",
     )
     d.step(
-        r"Of both signs of $w$ together, with $\Delta = 1 - \mu\,\mathrm{sn}_w^2\,\mathrm{sn}^2$:",
+        r"The sums of the values at $u + w$ and $u - w$ are simpler, with $\Delta = 1 - "
+        r"\mu\,\mathrm{sn}_w^2\,\mathrm{sn}^2$:",
         Matrix([s + shifted(-1)[0], dn + shifted(-1)[2]]),
         Matrix([2 * SN * CN_W * DN_W, 2 * DN * DN_W]) / BELOW,
-        because=r"sn is odd, cn and dn are even",
+        because="sn is odd, and cn and dn are even",
         named=r"\begin{bmatrix} \mathrm{sn}(u + w) + \mathrm{sn}(u - w) \\ \mathrm{dn}(u + w) + \mathrm{dn}(u - w) "
         r"\end{bmatrix}",
         display=r"\frac{2}{\Delta} \begin{bmatrix} \mathrm{sn}\,\mathrm{cn}_w\,\mathrm{dn}_w \\ "
@@ -108,13 +119,13 @@ def _zeta(d: Derivation) -> None:
     s, _, dn = shifted()
     along = derivatives()
     d.passage(
-        r"Let $Z(u)$ be the odd function with $Z' = \mathrm{dn}^2 - e$, where the constant $e$ is the mean of "
-        r"$\mathrm{dn}^2$, which makes it periodic; its value does not matter here."
+        r"Let $Z(u)$ be the odd function with $Z' = \mathrm{dn}^2 - e$. The constant $e$ is the mean of "
+        r"$\mathrm{dn}^2$, so that $Z$ is periodic; the value of $e$ does not matter here."
     )
     d.step(
-        r"Its addition theorem: the derivative of $Z(u + w) - Z(u)$ is that of $-\mu\,\mathrm{sn}_w\,\mathrm{sn}\,"
-        r"\mathrm{sn}(u + w)$, and both are $Z(w)$ and $0$ at $u = 0$, hence $Z(u + w) = Z(u) + Z(w) - \mu\,"
-        r"\mathrm{sn}_w\,\mathrm{sn}\,\mathrm{sn}(u + w)$.",
+        "The zeta function has the addition theorem $Z(u + w) = Z(u) + Z(w) - "
+        r"\mu\,\mathrm{sn}_w\,\mathrm{sn}\,\mathrm{sn}(u + w)$: both sides agree at $u = 0$, and they have the same "
+        "derivative.",
         dn**2 - DN**2,
         rate(-MU * SN_W * SN * s, along),
         because="the addition theorem of dn and the squares of cn and dn are substituted",
@@ -123,16 +134,17 @@ def _zeta(d: Derivation) -> None:
         display=r"\frac{d}{du} \left( -\mu\,\mathrm{sn}_w\,\mathrm{sn}\,S \right)",
     )
     d.step(
-        r"With both signs of $w$, of which $2 Z(w)$ is the constant part, $Z(u + w) - Z(u - w) - 2 Z(w)$ is this:",
+        "For $w$ and $-w$ together, the addition theorem gives $Z(u + w) - Z(u - w) - 2 Z(w)$ as:",
         -MU * SN_W * SN * (s + shifted(-1)[0]),
         -2 * MU * SN_W * CN_W * DN_W * SN**2 / BELOW,
-        because="the zeta function $Z$ is odd",
+        because=r"the zeta function $Z$ is odd, and the sum of $\mathrm{sn}(u + w)$ and $\mathrm{sn}(u - w)$ is "
+        "inserted",
         named=r"-\mu\,\mathrm{sn}_w\,\mathrm{sn} \left( \mathrm{sn}(u + w) + \mathrm{sn}(u - w) \right)",
         display=r"-\frac{2 \mu\,\mathrm{sn}_w\,\mathrm{cn}_w\,\mathrm{dn}_w\,\mathrm{sn}^2}{\Delta}",
     )
     d.passage(
-        r"Its integral over $u$ is what is called an integral of the third kind. An angle that grows at such a rate "
-        "is the argument of a theta function, as the next section shows: no integral is left."
+        "The integral of this function over $u$ is called an elliptic integral of the third kind. The next section "
+        "shows that an angle with this rate is the argument of a theta function, so the integral need not be computed."
     )
 
 
@@ -140,17 +152,14 @@ def _theta(d: Derivation) -> None:
     d.section("Theta functions")
     along = derivatives()
     d.passage(
-        r"Jacobi's function $\Theta$ is that whose logarithm has the derivative $Z$: $\Theta' = Z\,\Theta$. It is "
-        r"taken "
-        r"here by this equation; that it is the series $1 + 2 \sum (-1)^n q^{n^2} \cos(n \pi u / K)$ is Jacobi's "
-        r"theorem, "
-        "and is used by the numeric code, not by the proofs."
+        r"Jacobi's function $\Theta$ is defined here by its logarithmic derivative $Z$, that is by $\Theta' = "
+        r"Z\,\Theta$. Jacobi's theorem says that it is the series $1 + 2 \sum (-1)^n q^{n^2} \cos(n \pi u / K)$; the "
+        "numeric code uses this theorem, the proofs do not."
     )
     d.step(
         r"The function $\mathrm{H} = \Theta\,\mathrm{sn}$ has the logarithmic derivative $Z + "
-        r"\mathrm{cn}\,\mathrm{dn} / "
-        r"\mathrm{sn}$, which changes at the rate of $Z$ shifted by a half period: $\mathrm{ns}^2$ takes the place of "
-        r"$\mu\,\mathrm{sn}^2$.",
+        r"\mathrm{cn}\,\mathrm{dn} / \mathrm{sn}$. Its derivative is like that of $Z$, with $1/\mathrm{sn}^2$ in "
+        r"place of $\mu\,\mathrm{sn}^2$, as after a shift by half a period.",
         DN**2 + rate(CN * DN / SN, along),
         1 - 1 / SN**2,
         because=r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$",
@@ -158,27 +167,28 @@ def _theta(d: Derivation) -> None:
         named=r"\mathrm{dn}^2 + \frac{d}{du}\,\frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}",
     )
     d.passage(
-        r"For $w$ on the imaginary axis $\Theta(u - w)$ is the complex conjugate of $\Theta(u + w)$. The argument of "
-        r"$\Theta(u + w)$ therefore turns at half of $(Z(u + w) - Z(u - w))/i$ per unit of $u$: a constant, and a "
-        "multiple of an integrand of the third kind.",
+        r"For imaginary $w$, $\Theta(u - w)$ is the complex conjugate of $\Theta(u + w)$. The argument of $\Theta(u + "
+        "w)$ therefore has the derivative $(Z(u + w) - Z(u - w))/2i$ with respect to $u$: a constant plus a multiple "
+        "of the integrand of the third kind.",
     )
 
 
 def _imaginary(d: Derivation) -> None:
-    d.section("On the imaginary axis")
+    d.section("Imaginary arguments")
     complement = 1 - MU
     along = derivatives(parameter=complement)
     relations = [*squares(complement), imaginary()]
     values = Matrix([I * SN / CN, 1 / CN, DN / CN])
     d.passage(
-        r"Let now sn, cn, dn belong to the argument $a$ and to the parameter $1 - \mu$. Jacobi's imaginary "
-        r"transformation is that at $i a$, for the parameter $\mu$, the functions are",
+        r"From here on, sn, cn, dn have the argument $a$ and the parameter $1 - \mu$. Jacobi's imaginary "
+        r"transformation gives the functions with the parameter $\mu$ at the argument $i a$:",
         (r"\begin{bmatrix} \mathrm{sn}_w \\ \mathrm{cn}_w \\ \mathrm{dn}_w \end{bmatrix}_{w = i a}", values),
     )
     d.notation({rf"\mathrm{{{name}}}_w": value for name, value in zip(("sn", "cn", "dn"), values, strict=True)})
     d.notation({"i": I, "time": "a"}, along)
     d.step(
-        r"They obey the three equations, multiplied by $i$ for $d/da$, and start at $0, 1, 1$.",
+        "The three functions satisfy the defining equations, with the factor $i$ because the derivative is taken with "
+        "respect to $a$. At $a = 0$ they have the values $0, 1, 1$.",
         Matrix([rate(value, along) for value in values]),
         I * Matrix([values[1] * values[2], -values[0] * values[2], -MU * values[0] * values[1]]),
         because=r"$\mathrm{dn}^2 - \mathrm{cn}^2 = \mu\,\mathrm{sn}^2$ for the parameter $1 - \mu$",
@@ -187,21 +197,25 @@ def _imaginary(d: Derivation) -> None:
         display=r"i \begin{bmatrix} \mathrm{cn}_w\,\mathrm{dn}_w \\ -\mathrm{sn}_w\,\mathrm{dn}_w \\ "
         r"-\mu\,\mathrm{sn}_w\,\mathrm{cn}_w \end{bmatrix}",
     )
-    d.passage(r"So $\mathrm{sn}_w$ is imaginary there, $\mathrm{cn}_w$ and $\mathrm{dn}_w$ are real and at least 1.")
+    d.passage(
+        r"So for imaginary $w$, $\mathrm{sn}_w$ is imaginary, and $\mathrm{cn}_w$ and $\mathrm{dn}_w$ are real "
+        "and at least 1 in absolute value."
+    )
 
 
 def _limits(d: Derivation) -> None:
-    d.section("Where they are elementary")
+    d.section("Parameters with elementary functions")
     u = Symbol("u")
     for claim, parameter, functions, why in (
         (
-            r"At $\mu = 0$ they are a sine, a cosine and 1.",
+            r"At $\mu = 0$ the functions sn, cn, dn are sine, cosine and 1.",
             0,
             (sin(u), cos(u), u / u),
-            "these start and change as they must",
+            "these functions have the right derivatives and initial values",
         ),
         (
-            r"At $\mu = 1$ they are $\tanh$, $\mathrm{sech}$ and $\mathrm{sech}$ again: they do not return.",
+            r"At $\mu = 1$ the functions sn, cn, dn are $\tanh$, $\mathrm{sech}$ and $\mathrm{sech}$, which are not "
+            "periodic.",
             1,
             (tanh(u), sech(u), sech(u)),
             r"$\tanh' = 1 - \tanh^2 = \mathrm{sech}^2$",

@@ -29,9 +29,10 @@ def derive() -> Derivation:
         source="Whittaker, *Analytical Dynamics*, 4th ed., section 69; van Zon & Schofield, *J. Comput. Phys.* 225 "
         "(2007) 145",
         about=(
-            "Angular momentum is fixed in space. That gives two of the three angles of a free body from its angular "
-            "velocity; the third is a known function of time too, the argument of a theta function. Every body, and "
-            "both kinds of polhode: the moments need no order here."
+            "The angular momentum of a free body is fixed in space. Therefore two of the three angles of its attitude "
+            "follow from its angular velocity. The third angle is a known function of time too: the argument of a "
+            "theta function. The formulas hold for every body and for both kinds of polhode, whatever the order of "
+            "the moments."
         ),
     )
     _two_turns(d)
@@ -59,11 +60,12 @@ def turning_rate() -> Expr:
 
 
 def _two_turns(d: Derivation) -> None:
-    d.section("Two turns")
+    d.section("Two rotations")
     d.passage(
-        r"Let axis 3 of space be along the angular momentum, of length $H$, with the components $L_1, L_2, L_3$ in the "
-        r"body: $\omega = I^{-1} L$, the moments $A, B, C$ in any order. The attitude is taken apart into the smallest "
-        r"turn $P$ that brings $L$ to axis 3, and a turn by $\psi$ about axis 3 after it:",
+        "Let axis 3 of space be along the angular momentum. The angular momentum has the length $H$ and the body "
+        r"components $L_1, L_2, L_3$, with $\omega = I^{-1} L$ and moments $A, B, C$ in any order. The attitude is "
+        r"the product of the smallest rotation $P$ that takes $L$ to axis 3, and a following rotation by $\psi$ about "
+        "axis 3:",
         ("R", r"R_3(\psi)\,P"),
         ("P", smallest_turn()),
     )
@@ -79,7 +81,7 @@ def _two_turns(d: Derivation) -> None:
         along | {PSI: speed},
     )
     d.step(
-        "The smallest turn is a rotation.",
+        "The matrix $P$ is a rotation.",
         smallest * smallest.T,
         Matrix.eye(3),
         because=r"$L_1^2 + L_2^2 + L_3^2 = H^2$",
@@ -87,8 +89,8 @@ def _two_turns(d: Derivation) -> None:
         named=r"P\,P^{\mathsf T}",
     )
     d.step(
-        "It brings the angular momentum to axis 3. It fails only where $L$ is along $-e_3$; then another axis of the "
-        "body is called the third.",
+        "The rotation $P$ takes the angular momentum to axis 3. It is undefined only if $L$ is along $-e_3$; then "
+        "another axis of the body is numbered 3.",
         smallest * MOMENTUM,
         H * Matrix([0, 0, 1]),
         because="the relation of the previous step is substituted",
@@ -97,19 +99,19 @@ def _two_turns(d: Derivation) -> None:
         display=r"H\,e_3",
     )
     d.step(
-        "In the body the angular momentum moves by Euler's equations, which keep its length and the energy.",
+        "In the body, the angular momentum satisfies Euler's equations, which preserve its length and the energy.",
         Matrix([rate(squared(MOMENTUM), along), rate(MOMENTUM.dot(OMEGA), along)]),
         0,
-        because=r"$\dot L = L \times \omega$ is at right angles to both",
+        because=r"$\dot L = L \times \omega$ is perpendicular to both $L$ and $\omega$",
         named=r"\frac{d}{dt} \begin{bmatrix} L \cdot L \\ L \cdot \omega \end{bmatrix}",
     )
     d.notation({"T": energy})
     d.passage(
-        "Let the turn have this rate, $T$ being the energy:",
+        r"Let $T$ be the kinetic energy, and let the angle $\psi$ have the rate",
         (r"\dot\psi", r"\frac{2 T + H\,\omega_3}{H + L_3}"),
     )
     d.step(
-        r"Then the attitude obeys its equation, all nine entries.",
+        "Then $R$ satisfies the equation of the attitude, in all nine entries.",
         rate(about * smallest, along | {PSI: speed}),
         about * smallest * skew(OMEGA),
         because=r"$\dot L = L \times \omega$ for the components of $P$",
@@ -119,18 +121,18 @@ def _two_turns(d: Derivation) -> None:
     )
     d.notation({"T": T, r"\dot\psi": turning_rate()})
     d.step(
-        "In terms of the third component alone: a constant, and a part that depends on it.",
+        "The rate is the sum of a constant and a part that depends only on $L_3$.",
         turning_rate(),
         H / C + (2 * T - H**2 / C) / (H + L3),
-        because=r"$\omega_3 = L_3 / C$, and the part $\frac{H}{C} (H + L_3)$ of the numerator is divided off",
+        because=r"$\omega_3 = L_3 / C$, and $\frac{H}{C} (H + L_3)$ is split off from the numerator",
         named=r"\dot\psi",
     )
     d.notation({r"\dot\psi": speed})
     polar = rate(L2, along) * L1 - rate(L1, along) * L2
     precession = H * (L1**2 / A + L2**2 / B) / (L1**2 + L2**2)
     d.step(
-        r"It is the precession of [ZXZ](free_asymmetric_body.md) less the rate at which $(L_1, L_2)$ turns in the "
-        "body, which is its precession and its spin together: regular where $L$ is along axis 3, as neither alone is.",
+        "The rate is the precession in the angles [ZXZ](free_asymmetric_body.md) minus the rate at which $(L_1, L_2)$ "
+        "rotates in the body. Both of these are singular if $L$ is along axis 3; their difference is regular.",
         speed,
         precession - polar / (L1**2 + L2**2),
         because=r"$\dot L = L \times \omega$",
@@ -148,9 +150,9 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     parameter = SIGN * ONE * two * (B - A) / (A * B) / (speed * THREE)
     momentum = Matrix([ONE * CN, SIGN * two * SN, THREE * DN])
     d.passage(
-        r"Call axis 2 that of the intermediate moment and axis 3 the outer axis that the polhode goes round, be its "
-        r"moment the largest, $\sigma = 1$, or the smallest, $\sigma = -1$. Then $(C - A)(C - B) > 0$ and "
-        r"$(B - A)(C - B) \ge 0$. Time counts from where $L_2 = 0$, with $L = (\ell_1, 0, \ell_3)$. With",
+        "Let axis 2 have the intermediate moment, and let axis 3 be the axis that the polhode encloses. Its moment "
+        r"is either the largest ($\sigma = 1$) or the smallest ($\sigma = -1$). Then $(C - A)(C - B) > 0$ and $(B - "
+        r"A)(C - B) \ge 0$. Let $L = (\ell_1, 0, \ell_3)$ at $t = 0$, and define",
         (r"\ell_2", two),
         ("p", r"\sigma\,\frac{C - B}{B C}\,\frac{\ell_2 \ell_3}{\ell_1}"),
         (r"\mu", r"\sigma\,\frac{B - A}{A B}\,\frac{\ell_1 \ell_2}{p\,\ell_3}"),
@@ -160,11 +162,11 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     along = derivatives(speed, parameter)
     omega = TENSOR.inv() * momentum
     d.notation({r"\sigma": SIGN, "p": speed, r"\mu": parameter, "L": momentum, r"\omega": omega}, along)
-    d.nonzero("The outer moments differ from the intermediate one,", C - B, "C - B")
-    d.nonzero("and from each other,", C - A, "C - A")
+    d.nonzero("The moments of axes 2 and 3 are different,", C - B, "C - B")
+    d.nonzero("and so are the moments of axes 1 and 3,", C - A, "C - A")
     d.notation({"H": sqrt(ONE**2 + THREE**2), "T": momentum.dot(omega) / 2})
     d.step(
-        "Euler's equations hold, about either outer axis.",
+        r"This $L$ satisfies Euler's equations for both values of $\sigma$.",
         rate(momentum, along),
         momentum.cross(omega),
         because="the derivative of each elliptic function is a multiple of the product of the two other functions",
@@ -173,7 +175,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         display=r"L \times \omega",
     )
     d.step(
-        "The length of the angular momentum is kept.",
+        "The length of the angular momentum is constant.",
         squared(momentum),
         ONE**2 + THREE**2,
         because=r"$\ell_2^2 = \ell_1^2 + \mu\,\ell_3^2$",
@@ -181,7 +183,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         named=r"H^2",
     )
     d.step(
-        "So is the energy.",
+        "The energy is constant.",
         momentum.dot(omega),
         ONE**2 / A + THREE**2 / C,
         because=r"$\frac{\ell_2^2}{B} = \frac{\ell_1^2}{A} + \mu\,\frac{\ell_3^2}{C}$",
@@ -190,7 +192,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     )
     d.notation({"T": (ONE**2 / A + THREE**2 / C) / 2})
     d.step(
-        "The relation between the amplitudes.",
+        "The three amplitudes satisfy one relation.",
         two**2,
         ONE**2 + parameter * THREE**2,
         because=r"$\ell_2$, $p$ and $\mu$ are substituted",
@@ -199,7 +201,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         display=r"\ell_1^2 + \mu\,\ell_3^2",
     )
     d.step(
-        r"The parameter is 1 on the separatrix, where $H^2 = 2 T B$, and less elsewhere.",
+        "The parameter is 1 on the separatrix, where $H^2 = 2 T B$, and less than 1 elsewhere.",
         (1 - parameter) * THREE**2 * A * (C - B),
         C * A * (C - B) / C * THREE**2 - C * (B - A) * ONE**2,
         because="both sides of the equation are expanded",
@@ -207,7 +209,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         named=r"(1 - \mu)\,A (C - B)\,\ell_3^2",
     )
     d.step(
-        "The right side in terms of energy and angular momentum.",
+        "The right side of the previous equation contains energy and angular momentum only.",
         A * (C - B) * THREE**2 - C * (B - A) * ONE**2,
         A * C * ((ONE**2 + THREE**2) - B * (ONE**2 / A + THREE**2 / C)),
         because="both sides of the equation are expanded",
@@ -222,11 +224,11 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     two, parameter = constants["two"], constants["parameter"]
     d.notation({"H": H, "T": (ONE**2 / A + THREE**2 / C) / 2, r"\ell_2": two})
     d.passage(
-        r"The turn $\psi$ grows at a rate that depends on $L_3 = \ell_3\,\mathrm{dn}$ alone. Made free of the sum in "
-        "its denominator, it is a rational function of sn and dn."
+        r"The rate of $\psi$ depends on $L_3 = \ell_3\,\mathrm{dn}$ alone. If numerator and denominator are "
+        r"multiplied by $H - \ell_3\,\mathrm{dn}$, the rate becomes a rational function of sn and dn."
     )
     d.step(
-        "The factor below the line.",
+        "The denominator of the rate becomes:",
         (H - THREE * DN) * (H + THREE * DN),
         ONE**2 + parameter * THREE**2 * SN**2,
         because=r"$H^2 = \ell_1^2 + \ell_3^2$",
@@ -236,7 +238,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
         r"\frac{\ell_3^2}{\ell_1^2}\,\mathrm{sn}^2",
     )
     d.step(
-        "The factor above it.",
+        "The constant factor of the numerator is:",
         ONE**2 / A + THREE**2 / C - H**2 / C,
         SIGN * constants["speed"] * ONE * two / THREE,
         because=r"$p$ is substituted",
@@ -250,7 +252,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     rate_of_turn = turning_rate().subs({T: energy, L3: THREE * DN})
     d.notation({r"\dot\psi": rate_of_turn})
     d.step(
-        r"Hence the rate, $\ell_2$ and $p$ kept as they are,",
+        r"Hence the rate, expressed with $\ell_2$ and $p$, is:",
         rate_of_turn,
         H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below,
         because="the two previous steps are substituted",
@@ -266,17 +268,15 @@ def _theta(d: Derivation) -> None:
     imag = -THREE / ONE, H / ONE, TWO / ONE  # sn/i, cn, dn at w
     d.passage(
         r"Let $N$ be the function whose logarithm has the derivative $Y = \tfrac12 Z + \tfrac{i}{2}\,\mathrm{dn}$, "
-        r"with "
-        r"the [zeta function](elliptic_functions.md) $Z$; it is the theta function $\theta_4$ of the squared nome, "
-        r"shifted by half of its imaginary period, $N(u) = \theta_4\left( \tfrac{\pi}{2 K} (u + i K');\ q^2 "
-        r"\right)$ up to an exponential. And let $w$ be a point of the imaginary axis."
+        "where $Z$ is the [zeta function](elliptic_functions.md). Up to an exponential factor, it is the theta "
+        r"function $\theta_4$ of the squared nome, shifted by half its imaginary period: $N(u) = \theta_4\left( "
+        r"\tfrac{\pi}{2 K} (u + i K');\ q^2 \right)$. Let $w$ be a point of the imaginary axis with the following "
+        "values."
     )
     s, c, dn = imag
     d.step(
-        r"There $\mathrm{sn}_w = -i\,\ell_3 / \ell_1$, $\mathrm{cn}_w = H / \ell_1$, $\mathrm{dn}_w = \ell_2 / "
-        r"\ell_1$. "
-        r"There "
-        "is one: the three obey the two quadratic relations.",
+        r"At $w$, let $\mathrm{sn}_w = -i\,\ell_3 / \ell_1$, $\mathrm{cn}_w = H / \ell_1$ and $\mathrm{dn}_w = \ell_2 "
+        r"/ \ell_1$. There is a point with these values, since they satisfy the two quadratic relations.",
         Matrix([c**2 - s**2, dn**2 - MU * s**2]),
         Matrix([1, 1]),
         because=r"$H^2 = \ell_1^2 + \ell_3^2$ and $\ell_2^2 = \ell_1^2 + \mu\,\ell_3^2$",
@@ -288,12 +288,13 @@ def _theta(d: Derivation) -> None:
     below = 1 + MU * s**2 * SN**2
     argument = HALF * (-2 * MU * s * c * dn * SN**2 / below) / 2 + HALF * (2 * DN * dn / below) / 2
     d.passage(
-        r"For real $u$ the argument of $N(u + w)$ turns, per unit of $u$, at $(Y(u + w) - \overline{Y(u + w)})/2i$, "
-        r"where the conjugate has $u - w$ for $u + w$ and $-i$ for $i$. With the sums of "
-        r"[Z and dn](elliptic_functions.md) this is $Z(w)/2i$, a real constant, and a function of sn and dn."
+        r"For real $u$ the argument of $N(u + w)$ has the derivative $(Y(u + w) - \overline{Y(u + w)})/2i$ with "
+        "respect to $u$. The complex conjugate is obtained by replacing $u + w$ by $u - w$ and $i$ by $-i$. By the "
+        "addition theorems of [Z and dn](elliptic_functions.md), the derivative is the real constant $Z(w)/2i$ plus "
+        "a function of sn and dn."
     )
     d.step(
-        "That function is a constant less what the third angle asks for.",
+        "This function is a constant minus the variable term in the rate of the third angle.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "
@@ -305,21 +306,20 @@ def _theta(d: Derivation) -> None:
         r"{\Delta}",
     )
     d.step(
-        r"So $\psi/2$ and $-\sigma \arg N(p\,t + w)$ grow at rates that differ by a constant $\kappa$ only: "
-        r"$\psi/2 = \kappa\,t - \sigma \arg N(p\,t + w)$. No integral is left, and the attitude at any time costs as "
-        "much as at the next.",
+        r"So the rates of $\psi/2$ and $-\sigma \arg N(p\,t + w)$ differ only by a constant $\kappa$: $\psi/2 = "
+        r"\kappa\,t - \sigma \arg N(p\,t + w)$. This formula gives the attitude at any time without an integral.",
         HALF * (H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below)
         + SIGN * symbols.p * argument,
         H / (2 * C) + SIGN * symbols.p * H * TWO / (2 * ONE * THREE),
-        because="the fraction with dn occurs in both terms with opposite signs",
+        because="the fraction with dn occurs in both terms, with opposite signs",
         relations=relations,
         named=r"\tfrac12\,\dot\psi + \sigma\,p \left( \frac{d}{du} \arg N(u + w) - \frac{Z(w)}{2 i} \right)",
     )
     d.step(
-        r"Why the nome is squared: $Y$ changes at the rate $\tfrac12 \left( \mathrm{dn}^2 + i\,\mathrm{dn}' \right)$, "
-        r"less a constant. With its conjugate it has a product of second degree in dn: where one has a double pole, "
-        r"the "
-        "other is finite. So the zeros of $N$ are at every second pole of dn along the imaginary axis.",
+        r"The nome is squared for this reason: $Y$ has the derivative $\tfrac12 \left( \mathrm{dn}^2 + "
+        r"i\,\mathrm{dn}' \right)$ minus a constant. The product of this expression and its conjugate has degree two "
+        "in dn, so where one of the two has a double pole, the other is finite. Therefore the zeros of $N$ are at "
+        "every second pole of dn along the imaginary axis.",
         DN**4 + rate(DN, derivatives()) ** 2,
         (2 - MU) * DN**2 - (1 - MU),
         because="the squares of sn and cn are replaced",
@@ -335,8 +335,8 @@ def _special(d: Derivation) -> None:
     speed = turning_rate().subs(T, energy)
     d.notation({r"\dot\psi": speed, r"\dot L": MOMENTUM.cross(OMEGA)})
     d.step(
-        "With $B = A$ the third component is constant, and the third angle grows evenly: "
-        "[regular precession](symmetric_top.md).",
+        r"If $B = A$, the third component of $L$ is constant, and $\psi$ grows at a constant rate. This is [regular "
+        "precession](symmetric_top.md).",
         speed.subs(B, A),
         H / A + (1 / C - 1 / A) * L3,
         because=r"$L_1^2 + L_2^2 = H^2 - L_3^2$",
@@ -345,18 +345,19 @@ def _special(d: Derivation) -> None:
         display=r"\frac{H}{A} + \left( \frac{1}{C} - \frac{1}{A} \right) L_3",
     )
     d.step(
-        "The angular momentum goes round the axis of the body at a constant rate.",
+        "In the body, the angular momentum moves around axis 3 at a constant rate.",
         MOMENTUM.cross(OMEGA).subs(B, A),
         (1 / A - 1 / C) * L3 * Matrix([-L2, L1, 0]),
         because="the gyroscopic torque about axis 3 contains the difference of two equal moments",
         named=r"\left. \dot L \right|_{B = A}",
     )
     d.step(
-        "With all three equal it rests in the body, and the body turns about it at the rate $H/A$.",
+        "If all three moments are equal, the angular momentum is fixed in the body, and the body rotates about it at "
+        "the rate $H/A$.",
         Matrix([speed, *MOMENTUM.cross(OMEGA)]).subs({B: A, C: A}),
         Matrix([H / A, 0, 0, 0]),
         because="angular velocity and angular momentum are parallel",
         relations=LENGTH,
         named=r"\left. \begin{bmatrix} \dot\psi \\ \dot L \end{bmatrix} \right|_{A = B = C}",
     )
-    d.passage("On the separatrix all of this is elementary: see [the separatrix](free_body_separatrix.md).")
+    d.passage("On the separatrix all these functions are elementary: see [the separatrix](free_body_separatrix.md).")

@@ -27,20 +27,21 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37; van Zon & Schofield, *J. Comput. Phys.* 225 "
         "(2007) 145",
         about=(
-            r"With $H^2 = 2 T B$ the body leaves one steady rotation about its intermediate axis and settles into the "
-            "opposite one. Angular velocity and attitude are elementary functions of time."
+            "If $H^2 = 2 T B$, the body leaves a steady rotation about its intermediate axis and approaches the "
+            "opposite steady rotation. Angular velocity and attitude are elementary functions of time."
         ),
     )
     h = SHARE
     d.passage(
-        r"As on the page of [the attitude](free_body_attitude.md), with $\ell_1, \ell_3$ the components of angular "
-        r"momentum halfway, $H^2 = \ell_1^2 + \ell_3^2$. The intermediate moment is then no free choice:",
+        "The notation is that of the page on [the attitude](free_body_attitude.md): at $t = 0$, halfway through the "
+        r"motion, the angular momentum has the components $\ell_1, 0, \ell_3$ with $H^2 = \ell_1^2 + \ell_3^2$. On "
+        "the separatrix these components determine the intermediate moment:",
         ("B", MIDDLE),
         ("p", r"\sigma\,\frac{C - B}{B C}\,\frac{H\,\ell_3}{\ell_1}"),
     )
     d.section("Angular momentum in the body")
     d.passage(
-        "All is rational in one hyperbolic tangent:",
+        "All quantities are rational functions of one hyperbolic tangent:",
         ("h", tanh(P * TIME / 2)),
         (r"\tanh p\,t", r"\frac{2 h}{1 + h^2}"),
         (r"\mathrm{sech}\,p\,t", r"\frac{1 - h^2}{1 + h^2}"),
@@ -52,7 +53,7 @@ def derive() -> Derivation:
     omega = tensor.inv() * momentum
     d.notation({"p": P, "h": tanh(P * TIME / 2)}, {TIME: Integer(1)})
     d.step(
-        r"It changes at this rate.",
+        "The derivative of $h$ is:",
         tanh(P * TIME / 2).diff(TIME),
         P / 2 * (1 - tanh(P * TIME / 2) ** 2),
         because=r"$\tanh' = 1 - \tanh^2$",
@@ -62,7 +63,8 @@ def derive() -> Derivation:
     rising, falling = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
     d.notation({"h": h, r"\tanh p\,t": rising, r"\mathrm{sech}\,p\,t": falling}, _share(P))
     d.step(
-        r"The hyperbolic functions are these fractions: they start and change as $\tanh$ and $\mathrm{sech}$ do.",
+        r"The fractions for the hyperbolic functions are right: their derivatives are those of $\tanh p\,t$ and "
+        r"$\mathrm{sech}\,p\,t$, and so are their values at $t = 0$.",
         rate(Matrix([rising, falling]), _share(P)),
         P * Matrix([falling**2, -rising * falling]),
         because=r"$\dot h = \tfrac{p}{2} (1 - h^2)$",
@@ -71,7 +73,7 @@ def derive() -> Derivation:
     )
     d.notation({"p": SPEED, "L": momentum, r"\omega": omega, "B": MIDDLE, "H": H}, _share(SPEED))
     d.step(
-        "Euler's equations hold.",
+        "This $L$ satisfies Euler's equations.",
         rate(momentum, _share(SPEED)),
         momentum.cross(omega),
         because="$B$ and $p$ are substituted",
@@ -80,7 +82,7 @@ def derive() -> Derivation:
         display=r"L \times \omega",
     )
     d.step(
-        "Angular momentum and energy are kept, and $H^2 = 2 T B$.",
+        "The length of the angular momentum and the energy are constant, and $H^2 = 2 T B$.",
         Matrix([squared(momentum), momentum.dot(omega) * MIDDLE]),
         Matrix([H**2, H**2]),
         because=r"$\tanh^2 + \mathrm{sech}^2 = 1$",
@@ -106,7 +108,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         {"T": momentum.dot(omega) / 2, "L_1": momentum[0], "L_3": momentum[2], r"\omega_3": omega[2], r"\sigma": SIGN}
     )
     d.step(
-        "The turn about the angular momentum: its rate.",
+        "The rotation about the angular momentum has the rate:",
         speed,
         H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2]),
         because=r"$2 T = H^2 / B$",
@@ -117,7 +119,8 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
     d.notation({"p": P}, {TIME: Integer(1)} | _share(P))
     turned = H / MIDDLE * TIME - 2 * SIGN * atan(ONE * h / (H + THREE))
     d.step(
-        "Its angle: even growth, and in all one step from the one steady rotation to the other.",
+        "The angle of this rotation is the sum of a part that grows at a constant rate and an arctangent, which "
+        "changes by a finite amount during the whole motion.",
         rate(turned, {TIME: Integer(1)} | _share(P)),
         H / MIDDLE - SIGN * P * momentum[0] / (H + momentum[2]),
         because=r"$H^2 - \ell_3^2 = \ell_1^2$",
@@ -130,7 +133,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         {"R": rotation, "p": SPEED}, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}
     )
     d.step(
-        r"The attitude satisfies its equation, all nine entries: $R = R_3(\psi)\,P$, with both put in.",
+        r"The attitude $R = R_3(\psi)\,P$ with this angle satisfies the equation of the attitude, in all nine entries.",
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
         rotation * skew(omega),
         because="the rates of the previous steps are substituted",
@@ -139,7 +142,8 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         display=r"R\,[\omega]_\times",
     )
     d.step(
-        "In the end, as at the beginning, the angular momentum is along the intermediate axis, in opposite directions.",
+        "Long before and long after the motion, the angular momentum is along the intermediate axis, in opposite "
+        "directions.",
         Matrix([momentum.subs(h, 1), momentum.subs(h, -1)]),
         SIGN * H * Matrix([0, 1, 0, 0, -1, 0]),
         because=r"$h \to \pm 1$",

@@ -29,8 +29,9 @@ def derive() -> Derivation:
         source="Whittaker, *Analytical Dynamics*, 4th ed., sections 71 and 72; Klein & Sommerfeld, *The Theory of the "
         "Top*, vol. 2, chapter 6",
         about=(
-            "Nutation is the square of an elliptic function of time; precession and spin are arguments of theta "
-            "functions. The attitude is written so that nothing fails where the axis passes through the vertical."
+            "The height of the top's axis is a quadratic function of an elliptic function of time, and the angles of "
+            "precession and spin follow from arguments of theta functions. The formulas for the attitude are regular "
+            "even if the axis passes through the vertical."
         ),
     )
     _nutation(d)
@@ -51,9 +52,10 @@ def _nutation(d: Derivation) -> None:
     momentum, spin = (SUM + DIFFERENCE) / 2, (SUM - DIFFERENCE) / 2
     energy = 2 * W * ARM * (U1 + U2 + U3) - spin**2 / A
     d.passage(
-        r"By [energy and momenta](heavy_top.md) the square of the rate of $u = \cos\theta$ is a cubic in $u$, positive "
-        r"above its largest zero, not positive at $\pm 1$. Its zeros are $-1 \le u_1 \le u_2 \le 1 \le u_3$, and the "
-        "axis nods between the first two. Conversely they give the constants:",
+        r"[Energy and momenta](heavy_top.md) give the square of the rate of $u = \cos\theta$ as a cubic polynomial in "
+        r"$u$. It is positive above its largest zero and not positive at $\pm 1$. Its zeros are $-1 \le u_1 \le u_2 "
+        r"\le 1 \le u_3$, and $u$ oscillates between $u_1$ and $u_2$. Conversely, the zeros give the constants of the "
+        "motion:",
         (r"(p_\phi + p_\psi)^2", SUM**2),
         (r"(p_\phi - p_\psi)^2", DIFFERENCE**2),
         (r"2 E - \frac{p_\psi^2}{C}", r"2 W c_3 (u_1 + u_2 + u_3) - \frac{p_\psi^2}{A}"),
@@ -61,7 +63,7 @@ def _nutation(d: Derivation) -> None:
     d.notation({"u": u, r"p_\phi": momentum, r"p_\psi": spin, r"2 E - \frac{p_\psi^2}{C}": energy})
     d.notation({"E": (energy + spin**2 / C) / 2})
     d.step(
-        "With these constants the cubic of energy and momenta has these zeros.",
+        "With these constants, the cubic polynomial of energy and momenta has the zeros $u_1, u_2, u_3$.",
         (energy - 2 * W * ARM * u) * (1 - u**2) / A - (momentum - spin * u) ** 2 / A**2,
         cubic(u),
         because="both sides are cubics with equal values at $u = 1$ and $u = -1$ and two equal coefficients",
@@ -70,8 +72,8 @@ def _nutation(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.passage(
-        r"Let sn, cn, dn be of the argument $p\,t$ and the parameter $\mu$, time counted from where the axis is "
-        "lowest:",
+        r"Let sn, cn, dn have the argument $p\,t$ and the parameter $\mu$, and let $t = 0$ be a time at which the "
+        "axis is lowest:",
         ("p", SPEED),
         (r"\mu", PARAMETER),
         ("u", HEIGHT),
@@ -80,7 +82,7 @@ def _nutation(d: Derivation) -> None:
     speed = rate(HEIGHT, along)
     d.notation({"u": HEIGHT}, along)
     d.step(
-        "This height has the rate that the cubic asks for.",
+        "The square of the rate of this height equals the cubic polynomial.",
         speed**2,
         cubic(HEIGHT),
         because=r"$u - u_1$, $u_2 - u$ and $u_3 - u$ are the squares of sn, cn and dn, times constants",
@@ -89,7 +91,8 @@ def _nutation(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        "It has its acceleration too, so that it does not stay where the rate is zero.",
+        "The acceleration of this height is half the derivative of the cubic polynomial, as it must be. This excludes "
+        "a solution that stays where the rate is zero.",
         rate(speed, along),
         cubic(u).diff(u).subs(u, HEIGHT) / 2,
         because="the previous step is differentiated and divided by $\\dot u$; the result is proven separately",
@@ -107,7 +110,8 @@ def _rates(d: Derivation) -> None:
     rates = {r"\dot\phi": dphi, r"\dot\psi": dpsi}
     d.notation({r"p_\phi": P_PHI, r"p_\psi": P_PSI} | rates)
     d.step(
-        "Their sum and their difference are simpler than each: one fails only upside down, the other only upright.",
+        "The sum and the difference of both rates have simpler forms: the sum is singular only if the axis points "
+        "straight down, the difference only if it points straight up.",
         Matrix([dphi + dpsi, dphi - dpsi]),
         Matrix(
             [
@@ -119,10 +123,10 @@ def _rates(d: Derivation) -> None:
         named=r"\begin{bmatrix} \dot\phi + \dot\psi \\ \dot\phi - \dot\psi \end{bmatrix}",
     )
     d.step(
-        "Each alone has both.",
+        "Each rate alone is singular in both directions.",
         dphi,
         (P_PHI + P_PSI) / (2 * A * (1 + u)) + (P_PHI - P_PSI) / (2 * A * (1 - u)),
-        because="the phase rate is half the sum of the two rates",
+        because=r"$\dot\phi$ is half the sum of the two rates",
         named=r"\dot\phi",
     )
 
@@ -137,18 +141,17 @@ def _attitude(d: Derivation) -> None:
         cos(THETA / 2) * sin(plus),
     )
     d.passage(
-        r"Two complex numbers (Cayley, Klein) hold the attitude: $\alpha = \cos\tfrac\theta2\,e^{i (\phi + \psi)/2}$ "
-        r"and "
-        r"$\beta = \sin\tfrac\theta2\,e^{i (\phi - \psi)/2}$. The quaternion is "
-        r"$(\mathrm{Re}\,\alpha, \mathrm{Re}\,\beta, \mathrm{Im}\,\beta, \mathrm{Im}\,\alpha)$."
+        r"Two complex numbers (Cayley, Klein) describe the attitude: $\alpha = \cos\tfrac\theta2\,e^{i (\phi + "
+        r"\psi)/2}$ and $\beta = \sin\tfrac\theta2\,e^{i (\phi - \psi)/2}$. The quaternion is $(\mathrm{Re}\,\alpha, "
+        r"\mathrm{Re}\,\beta, \mathrm{Im}\,\beta, \mathrm{Im}\,\alpha)$."
     )
     turns = {f"R_{n}": lambda angle, axis=axis: elementary_rotation(axis, angle) for n, axis in ((1, "X"), (3, "Z"))}
     d.notation({"R": quaternion_to_dcm, "q": Matrix(quaternion)} | turns)
     d.step(
-        "It gives the rotation of the angles of ZXZ.",
+        "This quaternion gives the rotation of the Euler angles ZXZ.",
         quaternion_to_dcm(quaternion),
         dcm("ZXZ"),
-        because="the formulas for double angles are applied",
+        because="cosine and sine of each angle follow from those of its half",
         named=r"R(q)",
         display=r"R_3(\phi)\,R_1(\theta)\,R_3(\psi)",
     )
@@ -158,7 +161,7 @@ def _attitude(d: Derivation) -> None:
                         rate(sin(THETA / 2), {THETA: symbols.dtheta}) / sin(THETA / 2)])  # fmt: skip
     d.notation({"u": u, r"\dot u": du})
     d.step(
-        "How fast their lengths change, as logarithms.",
+        r"The logarithms of $|\alpha|$ and $|\beta|$ have these rates.",
         logarithm,
         Matrix([du / (2 * (1 + u)), -du / (2 * (1 - u))]),
         because=r"$\cos^2 \tfrac\theta2 = \tfrac12 (1 + u)$, $\sin^2 \tfrac\theta2 = \tfrac12 (1 - u)$",
@@ -168,7 +171,7 @@ def _attitude(d: Derivation) -> None:
 
 
 def _theta(d: Derivation) -> None:
-    d.section("No integral")
+    d.section("The attitude without an integral")
     s, c, dn = W_VALUES
     at_sum, c_sum, d_sum = shifted()
     names = {r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mathrm{sn}_w": s}
@@ -176,12 +179,13 @@ def _theta(d: Derivation) -> None:
         names | {r"\mathrm{sn}(u + w)": at_sum, r"\mathrm{cn}(u + w)": c_sum, r"\mathrm{dn}(u + w)": d_sum, r"\mu": MU}
     )
     d.passage(
-        r"The quotient $\mathrm{H}(u + w) / \Theta(u)$ of [theta functions](elliptic_functions.md) has the logarithmic "
-        r"derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$, which is $Z(w)$ plus "
-        "(the argument is again $p\\,t$)"
+        r"By the [theta functions](elliptic_functions.md), the quotient $\mathrm{H}(u + w) / \Theta(u)$ has the "
+        r"logarithmic derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$. In this "
+        r"section $u$ is the argument $p\,t$. The addition theorem of $Z$ turns the derivative into $Z(w)$ plus the "
+        "following expression."
     )
     d.step(
-        "This addition has one denominator.",
+        "This expression is a fraction with one denominator.",
         c_sum * d_sum / at_sum - MU * s * SN * at_sum,
         (SN * CN * DN - s * c * dn) / (SN**2 - s**2),
         because="the addition theorems are substituted",
@@ -200,15 +204,15 @@ def _theta(d: Derivation) -> None:
         sign_text = sign if sign == "-" else "+"
         d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
-            rf"For ${name}$ let $w$ be where $1 {sign_text} u$ would vanish, $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Then "
-            r"$\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ are these.",
+            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$; there $1 {sign_text} u$ is zero. "
+            rf"Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have these values.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
             because="the two quadratic relations between sn, cn and dn are substituted",
             named=r"\begin{bmatrix} 1 - \mathrm{sn}_w^2 \\ 1 - \mu\,\mathrm{sn}_w^2 \end{bmatrix}",
         )
         d.step(
-            "The denominator is that height, scaled.",
+            "The denominator is proportional to $1 + u$ or $1 - u$.",
             (U2 - U1) * (SN**2 - s2),
             side * (1 + side * HEIGHT),
             because="$u = u_1 + (u_2 - u_1)\\,\\mathrm{sn}^2$",
@@ -216,7 +220,7 @@ def _theta(d: Derivation) -> None:
             display="1 + u" if side == 1 else "-(1 - u)",
         )
         d.step(
-            "The real part is the rate of the length.",
+            r"The real part of the logarithmic derivative is the rate of $\ln |\alpha|$ or $\ln |\beta|$.",
             SPEED * SN * CN * DN / (SN**2 - s2),
             side * rate(HEIGHT, along) / (2 * (1 + side * HEIGHT)),
             because=r"$\dot u = 2 (u_2 - u_1)\,p\,\mathrm{sn}\,\mathrm{cn}\,\mathrm{dn}$",
@@ -224,9 +228,10 @@ def _theta(d: Derivation) -> None:
             display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
-            "The imaginary part is that of the angle, with a suitable sign of $w$, "
-            rf"$\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,\frac{{p_\phi {sign} p_\psi}}"
-            r"{2 A\,p\,(u_2 - u_1)}$:",
+            rf"The imaginary part is, up to a constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of "
+            rf"$w$ is chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,"
+            rf"\frac{{p_\phi {sign} p_\psi}}"
+            r"{2 A\,p\,(u_2 - u_1)}$.",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,
             because=r"$p$ and the momenta are substituted in terms of the zeros",
@@ -236,10 +241,9 @@ def _theta(d: Derivation) -> None:
         )
     d.passage(
         r"So $\alpha$ and $\beta$ are constants times $e^{i \kappa t}\,\mathrm{H}(p\,t + w) / \Theta(p\,t)$, each "
-        r"with its "
-        r"own $w$ and $\kappa$: their logarithmic derivatives agree up to the constants $i \kappa$, which collect $p\,"
-        r"Z(w)$ and $\pm \tfrac12 p_\psi (1/C - 1/A)$. They are regular wherever the axis points, the vertical "
-        "included."
+        r"with its own $w$ and $\kappa$: their logarithmic derivatives differ from those of the quotients only by "
+        r"constants $i \kappa$, which contain $p\,Z(w)$ and $\pm \tfrac12 p_\psi (1/C - 1/A)$. The formulas are "
+        "regular for every direction of the axis, including the vertical."
     )
 
 

@@ -19,8 +19,9 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 14; Whittaker, *Analytical Dynamics*, 4th ed., "
         "sections 44 and 55",
         about=(
-            r"A [heavy top](heavy_top_motion.md) without spin, $p_\psi = 0$, is a spherical pendulum; without "
-            "precession either, a pendulum in a plane. It swings, turns over, or takes for ever to reach the top."
+            r"A [heavy top](heavy_top_motion.md) with $p_\psi = 0$ (no spin) is a spherical pendulum. Without "
+            "precession too, it is a pendulum in a plane. A plane pendulum oscillates, goes around, or approaches "
+            "the highest position in an infinite time."
         ),
     )
     _plane(d)
@@ -30,24 +31,24 @@ def derive() -> Derivation:
 
 
 def _plane(d: Derivation) -> None:
-    d.section("In a plane")
+    d.section("The plane pendulum")
     d.passage(
-        r"Let $\theta$ be the angle from the lowest place, $A$ the moment about the axis, $W c_3$ the weight times its "
-        r"arm, and $p^2 = W c_3 / A$. The equation of motion is $\ddot\theta = -p^2 \sin\theta$. Let $s, c$ stand for "
-        r"$\sin\tfrac\theta2, \cos\tfrac\theta2$: they change at the rates $\tfrac12 \dot\theta\,c$ and "
-        r"$-\tfrac12 \dot\theta\,s$, and $\sin\theta = 2 s c$."
+        r"Let $\theta$ be the angle from the lowest position, $A$ the moment of inertia about the axis, $W c_3$ the "
+        r"weight times its arm, and $p^2 = W c_3 / A$. The equation of motion is $\ddot\theta = -p^2 \sin\theta$. Let "
+        r"$s = \sin\tfrac\theta2$ and $c = \cos\tfrac\theta2$, so that $\dot s = \tfrac12 \dot\theta\,c$, $\dot c = "
+        r"-\tfrac12 \dot\theta\,s$ and $\sin\theta = 2 s c$."
     )
     root = sqrt(MU)
     motions = (
         (
-            r"Swinging, with the greatest angle $2 \arcsin\sqrt\mu$: $s = \sqrt\mu\,\mathrm{sn}(p\,t)$, "
-            r"$c = \mathrm{dn}$, $\dot\theta = 2 p \sqrt\mu\,\mathrm{cn}$.",
+            r"Oscillation with the amplitude $2 \arcsin\sqrt\mu$: $s = \sqrt\mu\,\mathrm{sn}(p\,t)$, $c = "
+            r"\mathrm{dn}$, $\dot\theta = 2 p \sqrt\mu\,\mathrm{cn}$.",
             (root * SN, DN, 2 * P * root * CN),
             derivatives(P),
             squares(),
         ),
         (
-            r"Turning over: $s = \mathrm{sn}(p\,t / \sqrt\mu)$, $c = \mathrm{cn}$, $\dot\theta = 2 p\,\mathrm{dn} / "
+            r"Full rotation: $s = \mathrm{sn}(p\,t / \sqrt\mu)$, $c = \mathrm{cn}$, $\dot\theta = 2 p\,\mathrm{dn} / "
             r"\sqrt\mu$.",
             (SN, CN, 2 * P / root * DN),
             derivatives(P / root),
@@ -58,14 +59,15 @@ def _plane(d: Derivation) -> None:
         _holds(d, claim, motion, along, relations)
     _holds(
         d,
-        r"Between the two, $\mu = 1$: $s = \tanh p\,t$, $c = \mathrm{sech}\,p\,t$, $\dot\theta = 2 p\,\mathrm{sech}\,"
-        r"p\,t$. The top is reached after an infinite time.",
+        r"The limiting case, $\mu = 1$: $s = \tanh p\,t$, $c = \mathrm{sech}\,p\,t$, $\dot\theta = 2 "
+        r"p\,\mathrm{sech}\,p\,t$. The pendulum approaches the highest position in an infinite time.",
         (tanh(P * T), sech(P * T), 2 * P * sech(P * T)),
         {T: Integer(1)},
         [tanh(P * T) ** 2 + sech(P * T) ** 2 - 1],
     )
     d.step(
-        r"The energy of a swing, from the lowest place: $\mu$ is the share of what it takes to turn over.",
+        r"The energy of an oscillation, measured from the lowest position, is the fraction $\mu$ of the energy $2 W "
+        "c_3$ that is needed to reach the top.",
         A * (2 * P * root * CN) ** 2 / 2 + 2 * A * P**2 * (root * SN) ** 2,
         2 * A * P**2 * MU,
         because=r"$1 - \cos\theta = 2 s^2$",
@@ -97,12 +99,12 @@ def _holds(
 
 
 def _turning(d: Derivation) -> None:
-    d.section("As a heavy top")
+    d.section("The pendulum as a heavy top")
     flat = {U1: -1, U3: 1}
     d.notation({"u": symbols.gamma_3, r"\dot u": sqrt(cubic(symbols.gamma_3).subs(flat))})
     d.step(
-        r"The cubic of the [heavy top](heavy_top_motion.md) with both momenta zero has the zeros $-1$, $1$ and the "
-        "height of the highest place.",
+        "If both momenta are zero, the cubic polynomial of the [heavy top](heavy_top_motion.md) has the zeros $-1$, "
+        "$1$ and the largest height $u_2$.",
         cubic(symbols.gamma_3).subs(flat),
         2 * W * ARM / A * (U2 - symbols.gamma_3) * (1 - symbols.gamma_3**2),
         because="$1 - u^2$ is a common factor",
@@ -111,8 +113,8 @@ def _turning(d: Derivation) -> None:
     )
     d.notation({"u": HEIGHT.subs(flat), r"\mu": PARAMETER.subs(flat), "p": SPEED.subs(flat)})
     d.step(
-        r"Its solution is that of the swing: with $u = -\cos\theta$ for the angle from the lowest place, "
-        r"$\sin^2\tfrac\theta2$ is this.",
+        r"The heavy top then has the solution of the pendulum: with $u = -\cos\theta$, where $\theta$ is the angle "
+        r"from the lowest position, $\sin^2\tfrac\theta2$ is $\mu\,\mathrm{sn}^2$.",
         (1 + HEIGHT.subs(flat)) / 2,
         PARAMETER.subs(flat) * SN**2,
         because=r"$1 - \cos\theta = 2 \sin^2 \tfrac\theta2$",
@@ -120,7 +122,7 @@ def _turning(d: Derivation) -> None:
         display=r"\mu\,\mathrm{sn}^2",
     )
     d.step(
-        "The frequency is the same.",
+        "The frequency $p$ is the same.",
         SPEED.subs(flat) ** 2,
         W * ARM / A,
         because="$u_3 - u_1 = 2$",
@@ -133,17 +135,18 @@ def _spherical(d: Derivation) -> None:
     u = symbols.gamma_3
     highest = -(1 + U1 * U2) / (U1 + U2)
     d.passage(
-        r"Without spin, $p_\psi = 0$, but with $p_\phi \ne 0$ the axis goes round and nods between the heights $u_1$ "
-        r"and $u_2$ above the support. They give the third zero and the momentum:",
+        r"If $p_\psi = 0$ but $p_\phi \ne 0$, the pendulum moves around the vertical, and its height oscillates "
+        "between $u_1$ and $u_2$, measured from the support. These two heights give the third zero of the cubic "
+        "polynomial:",
         ("u_3", highest),
     )
-    d.nonzero("Not both are level,", U1 + U2, "u_1 + u_2")
+    d.nonzero("The two heights are not both zero,", U1 + U2, "u_1 + u_2")
     d.notation({"u": u})
     square = -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2) / (U1 + U2)
     energy = 2 * W * ARM * (U1 + U2 + highest)
     d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
     d.step(
-        r"The cubic of energy and momentum, with $p_\phi^2$ as below, has these zeros.",
+        r"The cubic polynomial of energy and momentum has these three zeros if $p_\phi^2$ has the value below.",
         energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,
         cubic(u).subs(U3, highest),
         because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",
@@ -151,15 +154,15 @@ def _spherical(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        r"The square of the momentum is not negative only where $u_1 + u_2 \le 0$: halfway, the pendulum is below "
-        "its support.",
+        r"The square of $p_\phi$ is not negative only if $u_1 + u_2 \le 0$: the mean of both heights is below the "
+        "support.",
         square * (U1 + U2),
         -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2),
         because="$1 - u^2$ is not negative",
         named=r"p_\phi^2\,(u_1 + u_2)",
     )
     d.step(
-        "With both heights equal it goes round a cone, at this rate squared.",
+        "If both heights are equal, the pendulum moves on a cone. The square of its rate is:",
         square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
         -W * ARM / (A * U1),
         because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",

@@ -22,18 +22,18 @@ def derive() -> Derivation:
         source="Hughes, *Spacecraft Attitude Dynamics*, section 6.2; Landau & Lifshitz, *Mechanics*, 3rd ed., section "
         "33, without the rotor",
         about=(
-            "A rotor at constant relative speed along the axis of a symmetric body changes the rates of regular "
-            "precession and nothing else. The attitude is the product of two steady rotations, one fixed in space and "
-            "one in the body; without the rotor it is that of the [free symmetric body](symmetric_top.md)."
+            "A rotor with a constant speed along the axis of a symmetric body changes only the rates of the regular "
+            "precession. The attitude is the product of two steady rotations, one about an axis fixed in space and "
+            "one about the symmetry axis. Without the rotor it is the attitude of the [free symmetric "
+            "body](symmetric_top.md)."
         ),
     )
     momentum = TENSOR * OMEGA + Matrix([0, 0, ROTOR])
     own = SPIN - momentum[2] / A
     alpha_b = angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, Matrix([0, 0, ROTOR]))
     d.passage(
-        r"Moments $A, A, C$, the rotor's mass included; its angular momentum relative to the body, $h_3$, along axis "
-        r"3. "
-        "No torque acts. The angular momentum is",
+        "The moments $A, A, C$ include the mass of the rotor. Relative to the body, the rotor has the angular "
+        "momentum $h_3$ along axis 3. No torque acts on the body. The total angular momentum is",
         ("L", momentum),
     )
     d.notation({r"\omega": OMEGA, "e_3": AXIS, "R": Matrix(quaternion_to_dcm())})
@@ -41,7 +41,7 @@ def derive() -> Derivation:
     _body(d, alpha_b)
     d.section("Two steady rotations")
     d.step(
-        r"The angular velocity is $L/A$ and a rotation about the axis at a constant rate $\nu$.",
+        r"The angular velocity is the sum of $L/A$ and a rotation about the symmetry axis at a constant rate $\nu$.",
         OMEGA,
         momentum / A + own * AXIS,
         because="the inertia tensor is $A$ times the unit matrix, except along axis 3",
@@ -67,7 +67,7 @@ def _body(d: Derivation, alpha_b: Matrix) -> None:
     d.section("In the body")
     turning = ((C - A) * SPIN + ROTOR) / A
     d.step(
-        "The spin is constant, and the transverse angular velocity turns at a constant rate.",
+        r"The spin $\omega_3$ is constant, and the transverse angular velocity rotates at a constant rate.",
         alpha_b,
         turning * Matrix([-symbols.omega_2, symbols.omega_1, 0]),
         because="the two equal moments cancel in the equation of axis 3, and the rotor lies along axis 3",
@@ -80,10 +80,11 @@ def _body(d: Derivation, alpha_b: Matrix) -> None:
     acceleration = angular_acceleration(TENSOR, solution, 0 * solution, Matrix([0, 0, A * rates[1] - (C - A) * SPIN]))
     d.notation({"p": rates[1], r"\dot\omega_b": acceleration}, {T: S.One})
     d.step(
-        r"So at any time, from $\omega_1, \omega_2$ at the start and with $p = ((C - A)\,\omega_3 + h_3)/A$,",
+        r"With the initial values $\omega_1, \omega_2$ and $p = ((C - A)\,\omega_3 + h_3)/A$, the angular velocity at "
+        "any time follows.",
         acceleration,
         solution.diff(T),
-        because="sine and cosine are each other's rates",
+        because="the derivative of the sine is the cosine, and that of the cosine minus the sine",
         named=r"\dot\omega_b",
         display=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos(p\,t) - \omega_2 \sin(p\,t) \\ \omega_1 \sin(p\,t) + "
         r"\omega_2 "
@@ -100,9 +101,8 @@ def _attitude(d: Derivation) -> None:
     turned = Matrix(quaternion_to_dcm(Matrix(quaternion_product(START, about_axis)))).T * direction
     omega = 2 * symbols.p * turned + 2 * symbols.Omega * AXIS
     d.passage(
-        r"Let $n$ be the direction of the angular momentum in space, $H$ its length, $q$ the attitude at the start, "
-        r"and "
-        r"$p = H/(2 A)$, $\Omega = \nu/2$. Then at any time the attitude is",
+        "Let $n$ be the direction of the angular momentum in space and $H$ its length, $q$ the initial attitude, $p "
+        r"= H/(2 A)$ and $\Omega = \nu/2$. Then the attitude at time $t$ is",
         (r"q(t)", r"(\cos(p\,t),\ n \sin(p\,t))\;q\;(\cos(\Omega t),\ e_3 \sin(\Omega t))"),
     )
     d.notation(
@@ -112,8 +112,8 @@ def _attitude(d: Derivation) -> None:
         }
     )  # fmt: skip
     d.step(
-        r"It obeys the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + \nu\,e_3$, $n_b$ being the "
-        "direction $n$ as seen from the body.",
+        r"This attitude satisfies the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + \nu\,e_3$, "
+        "where $n_b$ is the direction $n$ in body components.",
         attitude.diff(T),
         quaternion_rates("body", attitude) * omega,
         because="a left factor of the quaternion rotates about an axis of space, a right factor about an "
@@ -123,7 +123,7 @@ def _attitude(d: Derivation) -> None:
         display=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
     )
     d.step(
-        r"The turn about $n$ itself does not matter for it.",
+        "The rotation about $n$ does not change the body components of $n$.",
         Matrix(quaternion_to_dcm(attitude)).T * direction,
         turned,
         because="a rotation leaves its own axis fixed",
@@ -134,18 +134,18 @@ def _attitude(d: Derivation) -> None:
 
 
 def _rotor(d: Derivation, momentum: Matrix, own: object) -> None:
-    d.section("What the rotor does")
+    d.section("Effect of the rotor")
     d.notation({r"\nu": own, "H": sqrt(squared(momentum))})
     d.step(
-        r"With $h_3 = (A - C)\,\omega_3$ the body does not turn about its axis relative to the precession: a "
-        "dual-spin satellite keeps its face.",
+        r"If $h_3 = (A - C)\,\omega_3$, the body does not rotate about its axis relative to the precession. A "
+        "dual-spin satellite uses this.",
         own.subs(ROTOR, (A - C) * SPIN),  # type: ignore[attr-defined]
         0,
         because=r"$\nu$ is substituted",
         named=r"\left. \nu \right|_{h_3 = (A - C)\,\omega_3}",
     )
     d.step(
-        "The rate of the precession grows with the rotor.",
+        "The square of the precession rate is a sum of squares, one of which contains the rotor.",
         squared(momentum) / A**2,
         (A**2 * (symbols.omega_1**2 + symbols.omega_2**2) + (C * SPIN + ROTOR) ** 2) / A**2,
         because="the precession rate is $|L|/A$",

@@ -22,13 +22,12 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37; Whittaker, *Analytical Dynamics*, 4th ed., "
         "section 69",
         about=(
-            r"The components of the angular velocity of a free body, $A > B > C$, are Jacobi's elliptic functions of "
-            r"time. "
-            "The proof needs their derivatives and two quadratic relations, and nothing else about them."
+            "The components of the angular velocity of a free body with the moments $A > B > C$ are Jacobi's elliptic "
+            "functions of time. The proof uses only the derivatives of these functions and two quadratic relations."
         ),
     )
     for one, other in ((A, B), (A, C)):
-        d.nonzero("The moments differ,", one - other, f"{one} - {other}")
+        d.nonzero("Two moments are different,", one - other, f"{one} - {other}")
     _functions(d)
     _solution(d)
     _constants(d)
@@ -41,27 +40,27 @@ def _elliptic(p: object, parameter: object) -> dict:  # type: ignore[type-arg]
 
 
 def _functions(d: Derivation) -> None:
-    d.section("What is used of the elliptic functions")
+    d.section("The elliptic functions")
     rates = _elliptic(P, MU)
     d.notation({r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mu": MU, "A": A, "B": B, "C": C}, rates)
     d.notation({"a_1": FIRST, "a_3": THIRD, "I": INERTIA})
     d.passage(
-        r"Let $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ be those of the argument $p\,t$ and the parameter $\mu = k^2$. "
-        r"They start "
-        "at $0, 1, 1$ and obey",
+        r"Let $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ be Jacobi's functions of the argument $p\,t$ with the parameter "
+        r"$\mu = k^2$. They have the values $0, 1, 1$ at $t = 0$ and the derivatives",
         *((rf"\frac{{d}}{{dt}}\,{_latex(name)}", value) for name, value in rates.items()),
     )
     squares = [CN**2 - 1 + SN**2, DN**2 - 1 + MU * SN**2]
     d.step(
-        "Two sums of squares are constant, and 1 at the start:",
+        "Two sums of squares are constant; at $t = 0$ both are 1.",
         Matrix([rate(CN**2 + SN**2, rates), rate(DN**2 + MU * SN**2, rates)]),
         0,
-        because="the derivative of each function is a multiple of the other two, and the two terms cancel",
+        because="the derivative of each function is a multiple of the product of the other two, and the two terms of "
+        "each sum cancel",
         named=r"\frac{d}{dt} \begin{bmatrix} \mathrm{cn}^2 + \mathrm{sn}^2 \\ \mathrm{dn}^2 + \mu\,\mathrm{sn}^2 "
         r"\end{bmatrix}",
     )
     d.step(
-        r"So $\mathrm{dn}$ and $\mathrm{cn}$ are one function at $\mu = 1$, where they do not oscillate.",
+        r"At $\mu = 1$ the functions $\mathrm{dn}$ and $\mathrm{cn}$ are therefore equal; there they do not oscillate.",
         DN**2 - CN**2,
         (1 - MU) * SN**2,
         because="the two sums of squares are subtracted from each other",
@@ -88,16 +87,16 @@ def _solution(d: Derivation) -> None:
     rates = _elliptic(p, parameter)
     d.notation({}, rates)
     d.passage(
-        r"Let the body start with $\omega = (a_1, 0, a_3)$, on the side of the separatrix where $L^2 > 2 T B$: the "
-        r"polhode "
-        "goes round axis 1. The other side is the same with $A$ and $C$, axes 1 and 3, exchanged. With",
+        r"Let the body start with $\omega = (a_1, 0, a_3)$, and let $L^2 > 2 T B$, so that the polhode goes around "
+        "axis 1. For $L^2 < 2 T B$ the solution is the same with axes 1 and 3, and their moments $A$ and $C$, "
+        "exchanged. Define",
         ("a_2", amplitudes[1]),
         ("p", r"\frac{(A - C)\,a_1 a_3}{B\,a_2}"),
         (r"\mu", r"\frac{(B - C)\,a_2 a_3}{A\,p\,a_1}"),
         (r"\omega", r"\begin{bmatrix} a_1\,\mathrm{dn} \\ -a_2\,\mathrm{sn} \\ a_3\,\mathrm{cn} \end{bmatrix}"),
     )
     d.step(
-        "All three of Euler's equations hold.",
+        r"This $\omega$ satisfies Euler's equations.",
         INERTIA * rate(omega, rates),
         INERTIA * angular_acceleration(INERTIA, omega, 0 * omega),
         because="the derivative of each elliptic function is a multiple of the product of the two others, as "
@@ -107,7 +106,7 @@ def _solution(d: Derivation) -> None:
     )
     squares = [CN**2 - 1 + SN**2, DN**2 - 1 + parameter * SN**2]
     d.step(
-        "Energy is that of the start.",
+        "The kinetic energy has its initial value.",
         omega.dot(INERTIA * omega),
         A * FIRST**2 + C * THIRD**2,
         because=r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$ and $\mathrm{cn}^2 = 1 - \mathrm{sn}^2$",
@@ -115,7 +114,7 @@ def _solution(d: Derivation) -> None:
         named="2 T",
     )
     d.step(
-        "So is the length of angular momentum.",
+        "The length of the angular momentum has its initial value.",
         squared(INERTIA * omega),
         A**2 * FIRST**2 + C**2 * THIRD**2,
         because="the same two quadratic relations are substituted",
@@ -125,13 +124,13 @@ def _solution(d: Derivation) -> None:
 
 
 def _constants(d: Derivation) -> None:
-    d.section("Its constants, from energy and angular momentum")
+    d.section("The constants of the solution from energy and angular momentum")
     amplitudes, p, parameter = _amplitudes()
     twice = A * FIRST**2 + C * THIRD**2
     square = A**2 * FIRST**2 + C**2 * THIRD**2
     d.notation({"T": twice / 2, "L": sqrt(square)})
     d.step(
-        "The amplitudes.",
+        "The energy and the angular momentum give the amplitudes.",
         amplitudes.multiply_elementwise(amplitudes),
         Matrix(
             [
@@ -146,7 +145,7 @@ def _constants(d: Derivation) -> None:
         r"\frac{2 T A - L^2}{C (A - C)} \end{bmatrix}",
     )
     d.step(
-        "The frequency.",
+        "They give the frequency.",
         p**2,  # type: ignore[operator]
         (A - B) * (square - twice * C) / (A * B * C),
         because=r"$a_2$ is substituted",
@@ -154,7 +153,7 @@ def _constants(d: Derivation) -> None:
         display=r"\frac{(A - B) (L^2 - 2 T C)}{A B C}",
     )
     d.step(
-        "The parameter.",
+        "They give the parameter.",
         parameter,
         (B - C) * (twice * A - square) / ((A - B) * (square - twice * C)),
         because=r"$a_2$ and $p$ are substituted",
@@ -162,7 +161,7 @@ def _constants(d: Derivation) -> None:
         display=r"\frac{(B - C) (2 T A - L^2)}{(A - B) (L^2 - 2 T C)}",
     )
     d.step(
-        r"It is 1 on the separatrix, $L^2 = 2 T B$, and below 1 on this side of it.",
+        "The parameter is 1 on the separatrix, where $L^2 = 2 T B$, and less than 1 for $L^2 > 2 T B$.",
         (1 - parameter) * (A - B) * (square - twice * C),  # type: ignore[operator]
         (A - C) * (square - twice * B),
         because="both sides of the equation are expanded",
@@ -170,9 +169,8 @@ def _constants(d: Derivation) -> None:
         display=r"(A - C) (L^2 - 2 T B)",
     )
     d.step(
-        "With two equal moments, $B = C$, it is 0, the functions are a sine, a cosine and 1, and the frequency is "
-        "that of "
-        "[regular precession](symmetric_top.md).",
+        "With two equal moments, $B = C$, the parameter is 0. Then sn and cn are a sine and a cosine, dn is 1, and "
+        "the frequency is the frequency of [regular precession](symmetric_top.md).",
         Matrix([parameter, p**2]).subs(B, C),  # type: ignore[operator]
         Matrix([0, ((A - C) / C * FIRST) ** 2]),
         because=r"$B - C$ is a factor of $\mu$",
@@ -181,13 +179,16 @@ def _constants(d: Derivation) -> None:
 
 
 def _attitude(d: Derivation) -> None:
-    d.section("The attitude: two angles without an integral")
+    d.section("The attitude: nutation and spin without an integral")
     h, (_, theta, psi) = symbols.H, symbols.angles
     momentum = Matrix(dcm("ZXZ")).T * Matrix([0, 0, h])
-    d.passage("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
+    d.passage(
+        "Let axis 3 of space be along the angular momentum, which has the length $H$, and let the Euler angles "
+        "have the sequence ZXZ."
+    )
     d.step(
-        r"Nutation and spin are read off the angular velocity: $\cos\theta = C \omega_3 / H$, $\tan\psi = A \omega_1 / "
-        r"(B \omega_2)$.",
+        r"Nutation and spin follow from the angular velocity: $\cos\theta = C \omega_3 / H$ and $\tan\psi = A "
+        r"\omega_1 / (B \omega_2)$.",
         momentum,
         h * Matrix([sin(theta) * sin(psi), sin(theta) * cos(psi), cos(theta)]),
         because=r"$L_b = R^{\mathsf T} L_s$",
@@ -198,7 +199,7 @@ def _attitude(d: Derivation) -> None:
     rates = rate_jacobian("ZXZ").inverse * omega
     expected = (A * OMEGA[0] ** 2 + B * OMEGA[1] ** 2) / (A**2 * OMEGA[0] ** 2 + B**2 * OMEGA[1] ** 2)
     d.step(
-        "Precession alone is an integral over time (one of the third kind).",
+        "Only the precession needs an integral over time (an elliptic integral of the third kind).",
         rates[0],
         h * expected.subs(dict(zip(OMEGA, omega, strict=True)), simultaneous=True),
         because=r"$\dot q = B^{-1} \omega_b$",
@@ -206,7 +207,7 @@ def _attitude(d: Derivation) -> None:
         display=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{A^2 \omega_1^2 + B^2 \omega_2^2}",
     )
     d.step(
-        "The nutation swings unless two moments are equal.",
+        "The nutation oscillates unless two moments are equal.",
         rates[1],
         h * (1 / A - 1 / B) * sin(theta) * sin(psi) * cos(psi),
         because=r"$\dot\theta$ is the component along the line of nodes, $\omega_1 \cos\psi - \omega_2 \sin\psi$",

@@ -14,14 +14,14 @@ NONE = 0 * OMEGA
 def derive() -> Derivation:
     d = Derivation(
         "free_body_invariants",
-        title="What a free body keeps",
+        title="Conserved quantities of a free body",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37",
         about=(
-            "Without torque a body keeps its kinetic energy and its angular momentum in space. In the body the "
-            r"angular velocity therefore runs on the intersection of two ellipsoids, the polhode."
+            "Without a torque, the kinetic energy of a body is constant, and so is its angular momentum in space. In "
+            "body axes, the angular velocity therefore moves along the intersection of two ellipsoids, the polhode."
         ),
     )
-    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
     acceleration = angular_acceleration(TENSOR, OMEGA, NONE)
     motion = attitude_rates() | pairs(symbols.omega_b, acceleration)
     momentum_b = TENSOR * OMEGA
@@ -29,10 +29,11 @@ def derive() -> Derivation:
         {"I": TENSOR, r"\omega_b": OMEGA, r"\dot\omega_b": acceleration, "R": Matrix(quaternion_to_dcm())}, motion
     )
     d.passage(
-        r"Euler's equations without torque, full tensor:", (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b")
+        "Euler's equations without a torque, for the full inertia tensor, are",
+        (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b"),
     )
     d.step(
-        "Kinetic energy is kept.",
+        "The kinetic energy is constant.",
         rate(OMEGA.dot(momentum_b) / 2, motion),
         0,
         because=r"the gyroscopic torque is perpendicular to $\omega$",
@@ -47,7 +48,7 @@ def derive() -> Derivation:
         ),
     )
     d.step(
-        "All three components of angular momentum in space are kept.",
+        "All three components of the angular momentum in space are constant.",
         rate(Matrix(quaternion_to_dcm()) * momentum_b, motion),
         0,
         because="there is no torque, and Euler's equations state this in rotating axes",
@@ -62,7 +63,7 @@ def derive() -> Derivation:
         ),
     )
     d.step(
-        "So is its length, which needs no attitude.",
+        "The length of the angular momentum is constant; it does not depend on the attitude.",
         rate(squared(momentum_b), motion),
         0,
         because="a rotation preserves lengths",
@@ -82,14 +83,15 @@ def derive() -> Derivation:
     along = pairs(symbols.omega_b, angular_acceleration(inertia, OMEGA, NONE))
     doubled = OMEGA.dot(inertia * OMEGA)
     d.step(
-        "Along principal axes, a combination in which $\\omega_3$ does not occur: an ellipse or a hyperbola.",
+        r"Along principal axes, a combination of the two invariants does not contain $\omega_3$. It describes an "
+        "ellipse or a hyperbola.",
         squared(inertia * OMEGA) - c * doubled,
         a * (a - c) * symbols.omega_1**2 + b * (b - c) * symbols.omega_2**2,
         because="both invariants are quadratic, and the terms along axis 3 cancel",
         named=r"|L|^2 - 2 C E",
     )
     d.step(
-        "It is kept as well.",
+        "This combination is constant too.",
         rate(squared(inertia * OMEGA) - c * doubled, along),
         0,
         because="both terms of the sum are constant",
@@ -97,8 +99,8 @@ def derive() -> Derivation:
     )
     d.section("The herpolhode")
     d.step(
-        "The component of the angular velocity along the angular momentum is kept: "
-        "its tip moves in the invariable plane.",
+        "The component of the angular velocity along the angular momentum is constant, so the tip of the angular "
+        "velocity moves in a plane that is fixed in space (the invariable plane).",
         OMEGA.dot(momentum_b) - 2 * (Rational(1, 2) * OMEGA.dot(TENSOR * OMEGA)),
         0,
         because=r"$\omega \cdot L$ is twice the kinetic energy, and $|L|$ is conserved",

@@ -16,9 +16,9 @@ def derive() -> Derivation:
         title="The intermediate axis is unstable",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37",
         about=(
-            r"A free body turns steadily about any principal axis, at the rate $\Omega$. A small disturbance "
-            r"stays small "
-            "about the axes of the largest and the smallest moment, and grows exponentially about the intermediate one."
+            r"A free body can rotate steadily about any principal axis, at the rate $\Omega$. A small disturbance "
+            "stays small if the axis has the largest or the smallest moment, and grows exponentially if it has the "
+            "intermediate moment."
         ),
     )
     smallest, (first, second) = symbols.C, symbols.excess
@@ -26,7 +26,7 @@ def derive() -> Derivation:
     alpha_b = angular_acceleration(diag(a, b, c), OMEGA, 0 * OMEGA)
     ordered = {b: smallest + first, a: smallest + first + second}
     d.passage(
-        r"Moments in order, $A > B > C$, with positive differences:",
+        r"The moments are in the order $A > B > C$, with positive differences $\delta_1$ and $\delta_2$:",
         (b, ordered[b]),
         (a, ordered[a]),
     )
@@ -39,33 +39,32 @@ def derive() -> Derivation:
         squared_rate = (moment - low) * (high - moment) / (low * high) * symbols.Omega**2
         growth.append(squared_rate)
         d.step(
-            f"Axis {number + 1}, the {name} moment: a small disturbance across the axis obeys "
-            r"$\ddot x = \lambda^2 x$.",
+            f"For rotation about axis {number + 1} (the {name} moment), a small disturbance perpendicular to the "
+            r"axis obeys $\ddot x = \lambda^2 x$.",
             linear**2,
             diag(squared_rate, squared_rate),
-            because="to first order each of the two disturbances drives the other, so that the equations, "
-            "applied twice, give each of them back, times a constant",
+            because="to first order the rate of each of the two disturbed components is a constant times the other "
+            "component, so the second derivative of each is a constant times the component itself",
             named=r"\left( \partial \dot\omega / \partial \omega \right)^2 = \lambda^2\,\mathbf{1}, \quad \lambda^2",
             display=squared_rate,
         )
-    d.section("Signs")
+    d.section("The sign of the squared rate")
     verdicts = (
-        (0, -1, "about the axis of the largest moment a disturbance swings and stays small"),
-        (1, 1, "about the intermediate axis it grows"),
-        (2, -1, "about the axis of the smallest moment it swings and stays small"),
+        (0, -1, "about the axis of the largest moment, a disturbance oscillates and stays small"),
+        (1, 1, "about the intermediate axis, a disturbance grows"),
+        (2, -1, "about the axis of the smallest moment, a disturbance oscillates and stays small"),
     )
     for number, sign, sentence in verdicts:
         d.positive(
             f"{sentence[0].upper()}{sentence[1:]}.",
             sign * growth[number].subs(ordered),
-            because="the moment lies between the other two, so that both differences have the same sign"
+            because="the moment is between the other two, so both differences have the same sign"
             if sign > 0
-            else "the moment is the largest or the smallest, so that the two differences have opposite signs",
+            else "the moment is the largest or the smallest, so the two differences have opposite signs",
             named=r"\lambda^2" if sign > 0 else r"-\lambda^2",
         )
     d.passage(
-        r"The rate of growth is $\lambda = \Omega \sqrt{(A - B)(B - C) / (A C)}$: a body thrown like a "
-        r"tennis racket turns "
-        r"over after a few times $1/\lambda$."
+        r"The growth rate is $\lambda = \Omega \sqrt{(A - B)(B - C) / (A C)}$. A body thrown like a tennis racket "
+        r"flips over after a few times $1/\lambda$."
     )
     return d

@@ -23,13 +23,13 @@ def derive() -> Derivation:
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 5.6; Landau & Lifshitz, *Mechanics*, "
         "3rd ed., section 37",
         about=(
-            "A free body moves as if its ellipsoid of energy rolled, without slipping, on a plane fixed in space. The "
-            "point of contact is the end of the angular velocity: its path in the body is the polhode, on the plane "
-            "the "
-            "herpolhode."
+            "A free body moves as if its energy ellipsoid rolled without slipping on a plane that is fixed in space. "
+            "The point of contact is the tip of the angular velocity vector. Its path on the ellipsoid is the "
+            "polhode, its path on the plane the herpolhode."
         ),
     )
-    d.passage("Principal axes, moments $A, B, C$. Of a free body energy and the length of angular momentum are kept:",
+    d.passage("The components are along principal axes with the moments $A, B, C$. The energy of a free body and the "
+        "length of its angular momentum are constant:",
             ("2 T", TWICE_ENERGY), ("L^2", SQUARE))  # fmt: skip
     _rolling(d)
     _polhode(d)
@@ -45,7 +45,7 @@ def _rolling(d: Derivation) -> None:
     )
     d.notation({"n": Matrix(symbols.axis)})
     d.step(
-        r"The normal of the ellipsoid $2 T = \text{constant}$ at the end of $\omega$ is the angular momentum.",
+        r"The normal of the energy ellipsoid $2 T = \text{constant}$ at the tip of $\omega$ is the angular momentum.",
         Matrix([TWICE_ENERGY.diff(w) / 2 for w in OMEGA]),
         MOMENTUM,
         because=r"the gradient of a quadratic form $x \cdot I\,x$ is $2\,I\,x$",
@@ -53,7 +53,7 @@ def _rolling(d: Derivation) -> None:
         display=r"I\,\omega = L",
     )
     d.step(
-        "So the tangent plane there is across $L$, which is fixed in space.",
+        r"So the tangent plane at the tip of $\omega$ is perpendicular to $L$, which is fixed in space.",
         rate(Matrix(quaternion_to_dcm()) * MOMENTUM, attitude_rates() | FREE),
         0,
         because="there is no torque",
@@ -61,7 +61,8 @@ def _rolling(d: Derivation) -> None:
         named=r"\frac{d}{dt} (R\,L)",
     )
     d.step(
-        r"Its distance from the centre is $\omega \cdot L / |L| = 2 T / |L|$, a constant: the plane does not move.",
+        r"The distance of the tangent plane from the centre is $\omega \cdot L / |L| = 2 T / |L|$. It is constant, so "
+        "the plane does not move.",
         Matrix([OMEGA.dot(MOMENTUM), rate(TWICE_ENERGY, FREE), rate(SQUARE, FREE)]),
         Matrix([TWICE_ENERGY, 0, 0]),
         because="energy and angular momentum are conserved",
@@ -69,7 +70,7 @@ def _rolling(d: Derivation) -> None:
         display=r"\begin{bmatrix} 2 T \\ 0 \\ 0 \end{bmatrix}",
     )
     d.step(
-        "The point of the body that touches the plane is at rest at that moment: the ellipsoid rolls and does not "
+        "The point of the ellipsoid that touches the plane is momentarily at rest: the ellipsoid rolls and does not "
         "slip.",
         OMEGA.cross(OMEGA),
         0,
@@ -79,8 +80,8 @@ def _rolling(d: Derivation) -> None:
     axis = Matrix(symbols.axis)
     ray = axis / symbols.p
     d.step(
-        "The ellipsoid shows the moment about every axis $n$: its radius along $n$ is $1/\\sqrt{n \\cdot I n}$, for "
-        "$2 T = 1$.",
+        "The ellipsoid shows the moment of inertia about every axis $n$: for $2 T = 1$ its radius along $n$ is "
+        r"$1/\sqrt{n \cdot I n}$.",
         ray.dot(INERTIA * ray),
         1,
         because=r"for $p^2 = n \cdot I\,n$ the point $n/p$ is on the ellipsoid",
@@ -92,30 +93,31 @@ def _rolling(d: Derivation) -> None:
 def _polhode(d: Derivation) -> None:
     d.section("The polhode")
     w1, w2, w3 = OMEGA
-    d.passage("The polhode is where the ellipsoid of energy meets the ellipsoid of angular momentum.")
+    d.passage("The polhode is the intersection of the energy ellipsoid and the ellipsoid of constant angular momentum.")
     d.step(
-        "It lies on a cone.",
+        "The polhode lies on a cone.",
         sum(moment * (SQUARE - TWICE_ENERGY * moment) * w**2 for moment, w in zip((A, B, C), OMEGA, strict=True)),
         0,
-        because="in $L^2$ times one equation minus $2 T$ times the other the constants cancel",
+        because="$L^2$ times the equation of the energy minus $2 T$ times the equation of the angular momentum has no "
+        "constant term",
         named=r"A (L^2 - 2 T A)\,\omega_1^2 + B (L^2 - 2 T B)\,\omega_2^2 + C (L^2 - 2 T C)\,\omega_3^2",
     )
     d.step(
-        "Seen along axis 3, of one extreme moment, it is an ellipse.",
+        "Projected along axis 3 (the smallest moment), the polhode is part of an ellipse.",
         SQUARE - TWICE_ENERGY * C,
         A * (A - C) * w1**2 + B * (B - C) * w2**2,
         because=r"$\omega_3$ is eliminated",
         named=r"L^2 - 2 T C",
     )
     d.step(
-        "Seen along axis 1, of the other, likewise.",
+        "Projected along axis 1 (the largest moment), the polhode is part of an ellipse too.",
         TWICE_ENERGY * A - SQUARE,
         B * (A - B) * w2**2 + C * (A - C) * w3**2,
         because=r"$\omega_1$ is eliminated",
         named=r"2 T A - L^2",
     )
     d.step(
-        "Seen along the intermediate axis 2 it is a hyperbola.",
+        "Projected along axis 2 (the intermediate moment), the polhode is part of a hyperbola.",
         SQUARE - TWICE_ENERGY * B,
         A * (A - B) * w1**2 - C * (B - C) * w3**2,
         because=r"$\omega_2$ is eliminated; for $A > B > C$ the two terms differ in sign",
@@ -127,8 +129,8 @@ def _polhode(d: Derivation) -> None:
         {"A": A.subs(ordered), "B": B.subs(ordered), "T": TWICE_ENERGY.subs(ordered) / 2, "L": MOMENTUM.subs(ordered)}
     )
     d.step(
-        r"With $A > B > C$, that is $B = C + \delta_1$ and $A = B + \delta_2$, the first two are sums of squares: "
-        r"$2 T C \le L^2 \le 2 T A$.",
+        r"For $A > B > C$, written as $B = C + \delta_1$ and $A = B + \delta_2$, the left sides of both ellipses are "
+        r"sums of squares. So $2 T C \le L^2 \le 2 T A$.",
         Matrix([SQUARE - TWICE_ENERGY * C, TWICE_ENERGY * A - SQUARE]).subs(ordered),
         Matrix(
             [
@@ -136,14 +138,15 @@ def _polhode(d: Derivation) -> None:
                 B * two * w2**2 + C * (one + two) * w3**2,
             ]
         ).subs(ordered),
-        because="all coefficients of the expression are positive",
+        because="all coefficients of the squares are positive",
         named=r"\begin{bmatrix} L^2 - 2 T C \\ 2 T A - L^2 \end{bmatrix}",
         display=r"\begin{bmatrix} A (\delta_1 + \delta_2)\,\omega_1^2 + B\,\delta_1 \omega_2^2 \\ "
         r"B\,\delta_2 \omega_2^2 + C (\delta_1 + \delta_2)\,\omega_3^2 \end{bmatrix}",
     )
     d.notation({"A": A, "B": B, "T": TWICE_ENERGY / 2, "L": MOMENTUM})
     d.step(
-        r"At $L^2 = 2 T B$ the hyperbola is two planes through axis 2, the separatrices.",
+        "At $L^2 = 2 T B$ the hyperbola degenerates into two planes through axis 2. The polhodes in these planes are "
+        "the separatrices.",
         (SQUARE - TWICE_ENERGY * B).subs(w3, w1 * symbols.epsilon),
         0,
         because=r"$\omega_3 = \epsilon\,\omega_1$ with $\epsilon^2 = \frac{A (A - B)}{C (B - C)}$",
@@ -156,7 +159,8 @@ def _herpolhode(d: Derivation) -> None:
     d.section("The herpolhode")
     w1, w2, w3 = OMEGA
     d.step(
-        "The point of contact moves between two circles: its distance changes where no component is zero.",
+        r"The length of $\omega$ changes whenever all its components differ from zero. So the point of contact moves "
+        "on the plane between two circles.",
         rate(squared(OMEGA), FREE) / 2,
         (A - B) * (B - C) * (A - C) / (A * B * C) * w1 * w2 * w3,
         because=r"each of Euler's equations is multiplied by its component of $\omega$",
@@ -164,23 +168,23 @@ def _herpolhode(d: Derivation) -> None:
     )
     along = OMEGA.dot(MOMENTUM) / SQUARE * MOMENTUM
     d.step(
-        "Its distance from the foot of the plane.",
+        "The point of contact has this distance from the foot of the perpendicular from the centre to the plane.",
         squared(OMEGA - along),
         squared(OMEGA) - TWICE_ENERGY**2 / SQUARE,
-        because=r"the part of $\omega$ along $L$ has the length $2 T / |L|$",
+        because=r"the component of $\omega$ along $L$ is $2 T / |L|$",
         named=r"\left| \omega - \frac{2 T}{L^2}\,L \right|^2",
         display=r"|\omega|^2 - \frac{(2 T)^2}{L^2}",
     )
     across = OMEGA - along
     d.step(
-        "In space only its part across $L$ moves.",
+        r"Only the part of $\omega$ that is perpendicular to $L$ changes.",
         Matrix([*angular_acceleration(INERTIA, OMEGA, 0 * OMEGA)]).dot(MOMENTUM),
         0,
         because=r"$\omega \cdot L$ is conserved and $L$ is fixed",
         named=r"\dot\omega \cdot L",
     )
     d.step(
-        "For two equal moments the distance is constant: polhode and herpolhode are circles.",
+        "For two equal moments this distance is constant: polhode and herpolhode are circles.",
         rate(squared(across), FREE).subs(B, A),
         0,
         because=r"the factor $A - B$ is zero",

@@ -15,15 +15,16 @@ def derive() -> Derivation:
         title="A spherical body",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 32",
         about=(
-            "A cube has the tensor of a ball. With three equal moments angular momentum and angular velocity are "
-            "parallel, whatever the axes, and without torque nothing changes but the angle about a fixed axis."
+            "A body with three equal moments is called spherical. A cube is one example: its inertia tensor is like "
+            "that of a ball. Angular momentum and angular velocity are parallel in all axes, and without a torque the "
+            "body rotates steadily about a fixed axis."
         ),
     )
     inertia = diag(symbols.A, symbols.A, symbols.A)
     dcm_sb = Matrix(quaternion_to_dcm())
     free = angular_acceleration(inertia, OMEGA, 0 * OMEGA)
     d.step(
-        "The tensor is the same in all axes.",
+        "The inertia tensor is the same in all axes.",
         dcm_sb * inertia * dcm_sb.T,
         inertia,
         because="the inertia tensor is a multiple of the unit matrix",
@@ -31,7 +32,7 @@ def derive() -> Derivation:
         named=r"R\,I\,R^{\mathsf T}",
     )
     d.step(
-        "Without torque the angular velocity in the body is constant.",
+        "Without a torque the angular velocity in the body is constant.",
         free,
         0,
         because="angular velocity and angular momentum are parallel",
@@ -39,7 +40,7 @@ def derive() -> Derivation:
     )
     motion = attitude_rates() | pairs(symbols.omega_b, free)
     d.step(
-        "And so it is in space.",
+        "The angular velocity in space is constant too.",
         rate(dcm_sb * OMEGA, motion),
         0,
         because=r"$\omega \times \omega = 0$",
@@ -47,7 +48,8 @@ def derive() -> Derivation:
         named=r"\dot\omega_s",
     )
     d.step(
-        "With a torque, the body answers like a point mass in three directions.",
+        "Under a torque the angular acceleration is the torque divided by the moment, like the acceleration of a "
+        "point mass under a force.",
         angular_acceleration(inertia, OMEGA, Matrix(symbols.torque_b)),
         Matrix(symbols.torque_b) / symbols.A,
         because="the gyroscopic term is zero",

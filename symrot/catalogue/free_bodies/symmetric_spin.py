@@ -17,12 +17,13 @@ def derive() -> Derivation:
         title="The spin of a symmetric body is constant",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
         about=(
-            r"With equal moments about axes 1 and 2 the angular velocity $\omega_3$ about the symmetry axis changes "
-            "only by a torque about that axis. Many torques have none, whatever the attitude: each is looked at."
+            r"With equal moments about axes 1 and 2, the angular velocity $\omega_3$ about the symmetry axis (the "
+            "spin) changes only under a torque about this axis. This page lists torques that have no component about "
+            "the axis at any attitude."
         ),
     )
     inertia = diag(symbols.A, symbols.A, symbols.C)
-    d.define("Two moments are equal, axis 3 is the axis of symmetry:", "I", inertia)
+    d.define("Two moments are equal, and axis 3 is the symmetry axis:", "I", inertia)
 
     def spin(torque: Matrix, momentum: Matrix | None = None) -> object:
         return angular_acceleration(inertia, OMEGA, torque, momentum)[2]
@@ -35,35 +36,35 @@ def derive() -> Derivation:
         named=r"\dot\omega_3",
         via=[
             (
-                "Euler's equation on axis 3 for three moments $A, B, C$; here $B = A$:",
+                "Euler's equation for axis 3 with three moments $A, B, C$, of which $A = B$ here:",
                 angular_acceleration(diag(*symbols.principal), OMEGA, Matrix(symbols.torque_b))[2],
                 ((symbols.A - symbols.B) * symbols.omega_1 * symbols.omega_2 + symbols.tau_3) / symbols.C,
             )
         ],
     )
-    d.section("Torques without a moment about the axis")
+    d.section("Torques without a component about the axis")
     down, radius = Matrix(symbols.vertical), Matrix(symbols.radius)
     laws = {
-        "Without torque.": (0 * OMEGA, None, "there is none"),
-        "Gravity on a centre of mass that lies on the axis.": (
+        "Without a torque the spin is constant.": (0 * OMEGA, None, "the torque is zero"),
+        "The weight does not change the spin if the centre of mass is on the axis.": (
             symbols.W * Matrix([0, 0, symbols.c_3]).cross(down),
             None,
-            "the moment of the weight is at right angles to the arm, for every vertical $\\gamma$",
+            r"the moment of the weight is perpendicular to its arm, for every vertical direction $\gamma$",
         ),
-        "The gravity gradient.": (
+        "The torque of the gravity gradient does not change the spin.": (
             3 * symbols.n**2 * radius.cross(inertia * radius),
             None,
-            "equal moments cancel in it as in the gyroscopic term, for every radius $r$",
+            "equal moments cancel as in the gyroscopic term, for every orbital radius $r$",
         ),
-        "A rotor along the axis.": (
+        "A rotor along the axis does not change the spin.": (
             0 * OMEGA,
             Matrix([0, 0, symbols.h_3]),
-            r"$\omega \times h$ is at right angles to $h$",
+            r"$\omega \times h$ is perpendicular to $h$",
         ),
-        "A torque constant in the body, across the axis.": (
+        "A torque that is constant in the body and perpendicular to the axis does not change the spin.": (
             Matrix([symbols.tau_1, symbols.tau_2, 0]),
             None,
-            "it has no component along it",
+            "the torque has no component along the axis",
         ),
     }
     for claim, (torque, momentum, reason) in laws.items():

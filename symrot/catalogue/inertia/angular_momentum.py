@@ -20,8 +20,8 @@ def derive() -> Derivation:
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 5.1 to 5.3; Landau & Lifshitz, "
         "*Mechanics*, 3rd ed., section 32",
         about=(
-            "A body is a sum of particles that turn together. Its angular momentum is linear in the angular velocity, "
-            "and the matrix of that map is the inertia tensor."
+            "A rigid body consists of particles that rotate with a common angular velocity. Its angular momentum is "
+            "linear in the angular velocity, and the matrix of this linear map is the inertia tensor."
         ),
     )
     _one_particle(d)
@@ -37,7 +37,8 @@ def _one_particle(d: Derivation) -> None:
     d.notation({"r": point, r"\omega": OMEGA})
     momentum = point.cross(mass * OMEGA.cross(point))
     d.step(
-        r"The angular momentum of a particle at $r$ that turns with $\omega$.",
+        r"A particle at $r$ that moves with the angular velocity $\omega$ has an angular momentum that is linear in "
+        r"$\omega$.",
         momentum,
         mass * (squared(point) * eye(3) - point * point.T) * OMEGA,
         because=r"$r \times (\omega \times r) = |r|^2 \omega - r\,(r \cdot \omega)$",
@@ -45,7 +46,8 @@ def _one_particle(d: Derivation) -> None:
         display=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.step(
-        "The matrix of this map, written out: moments on the diagonal, products with the minus sign beside it.",
+        "The matrix of this linear map has the moments of inertia on its diagonal and the products of inertia, with a "
+        "minus sign, beside the diagonal.",
         momentum.jacobian(OMEGA),
         Matrix(inertia_of_point(mass, point)),
         because=r"the coefficients of the components of $\omega$ are compared",
@@ -55,11 +57,14 @@ def _one_particle(d: Derivation) -> None:
 
 def _sum(d: Derivation) -> None:
     d.section("Many particles")
-    d.passage("Three particles stand for any number: every sum below is linear in the particles.")
+    d.passage(
+        "The proof uses three particles. It holds for any number, because every sum below is linear in the "
+        "contributions of the particles."
+    )
     total = sum((p.cross(m * OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.step(
-        "All turn with one angular velocity, so their tensors add.",
+        "All particles have the same angular velocity, so their inertia tensors add.",
         total,
         tensor * OMEGA,
         because="a sum of linear maps is the map of the sum",
@@ -69,7 +74,7 @@ def _sum(d: Derivation) -> None:
     )
     d.notation({"I": tensor})
     d.step(
-        "The tensor is symmetric.",
+        "The inertia tensor is symmetric.",
         tensor - tensor.T,
         0,
         because=r"$r\,r^{\mathsf T}$ is symmetric",
@@ -78,10 +83,10 @@ def _sum(d: Derivation) -> None:
 
 
 def _center(d: Derivation) -> None:
-    d.section("About any point: the part of the centre of mass")
+    d.section("Angular momentum about any point")
     balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     d.passage(
-        r"Let the centre of mass be at $x$, with the velocity $v$, and the particles at $x + r_i$:",
+        "Let the centre of mass be at $x$, with the velocity $v$, and particle $i$ at $x + r_i$:",
         (rf"{COUNT} m_i\,r_i", "0"),
         ("M", rf"{COUNT} m_i"),
     )
@@ -90,10 +95,11 @@ def _center(d: Derivation) -> None:
     momentum = sum(((PLACE + p).cross(m * (V + OMEGA.cross(p))) for m, p in moving), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.step(
-        "Angular momentum is that of the total mass in the centre, and that of the turning about it.",
+        "The angular momentum of a body is that of its total mass at the centre of mass, plus that of the rotation "
+        "about the centre of mass.",
         momentum,
         PLACE.cross(mass * V) + tensor * OMEGA,
-        because=rf"the mixed terms hold ${COUNT} m_i\,r_i = 0$",
+        because=rf"the mixed terms contain the factor ${COUNT} m_i\,r_i = 0$",
         relations=list(balance),
         named=rf"{COUNT} (x + r_i) \times m_i \left( v + \omega \times r_i \right)",
         display=r"x \times M v + I\,\omega",
@@ -101,15 +107,13 @@ def _center(d: Derivation) -> None:
 
 
 def _properties(d: Derivation) -> None:
-    d.section("What every inertia tensor obeys")
+    d.section("Properties of every inertia tensor")
     d.notation({r"\omega": OMEGA})
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.notation({"I": tensor})
     d.step(
-        r"The product $\omega \cdot I\,\omega$ is a sum of squares: the principal moments are not negative, and zero "
-        r"only for "
-        r"particles "
-        "on one line.",
+        r"The product $\omega \cdot I\,\omega$ is a sum of squares. So no principal moment is negative, and a "
+        "principal moment is zero only if all particles lie on one line.",
         OMEGA.dot(tensor * OMEGA),
         sum(m * squared(OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
         because=r"$\omega \cdot (r \times (\omega \times r)) = |\omega \times r|^2$",
@@ -117,14 +121,14 @@ def _properties(d: Derivation) -> None:
         display=rf"{COUNT} m_i\,|\omega \times r_i|^2",
     )
     d.step(
-        "No moment exceeds the sum of the other two.",
+        "No moment of inertia exceeds the sum of the other two.",
         tensor[0, 0] + tensor[1, 1] - tensor[2, 2],
         2 * sum(m * p[2] ** 2 for m, p in zip(MASSES, POINTS, strict=True)),
-        because="of $x^2$ and $y^2$, one occurs in each of the first two moments, and both occur in the third",
+        because="the squares $x^2$ and $y^2$ cancel, and $z^2$ occurs in both of the first two moments",
         named=r"I_{xx} + I_{yy} - I_{zz}",
     )
     d.step(
-        "Half the trace is the polar moment, the same in all axes.",
+        "Half the trace of the tensor is the polar moment of inertia, which is the same in all axes.",
         tensor.trace() / 2,
         sum(m * squared(p) for m, p in zip(MASSES, POINTS, strict=True)),
         because="each of $x^2$, $y^2$, $z^2$ occurs in two of the three moments",
@@ -133,15 +137,15 @@ def _properties(d: Derivation) -> None:
     )
     about_third = Matrix([0, 0, symbols.omega_3])
     d.step(
-        "Angular momentum is not along the angular velocity unless the axis is a principal one: about axis 3 "
-        "the products lead it aside.",
+        "The angular momentum is parallel to the angular velocity only if the axis is a principal axis. About axis 3, "
+        "the products of inertia add components along axes 1 and 2.",
         (TENSOR * about_third).cross(about_third),
         symbols.omega_3**2 * Matrix([symbols.I_yz, -symbols.I_xz, 0]),
-        because="the third column of the inertia tensor has three entries",
+        because="the first two entries of the third column of the tensor are products of inertia",
         named=r"I\,\omega \times \omega\ \text{for}\ \omega = \omega_3\,e_3",
     )
     d.step(
-        "Of bodies, it is a needle along axis 3 that meets the bound: its moment about itself is zero.",
+        "A needle along axis 3 has the moment of inertia zero about its own line.",
         Matrix(inertia_of_point(symbols.m, Matrix([0, 0, symbols.z]))) * Matrix([0, 0, 1]),
         0,
         because="all particles of a needle lie on its axis",

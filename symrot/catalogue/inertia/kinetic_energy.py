@@ -23,9 +23,9 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., sections 32 and 35; Goldstein, Poole & Safko, *Classical "
         "Mechanics*, 3rd ed., section 5.3",
         about=(
-            r"The kinetic energy of a body is that of its mass in the centre of mass and $\tfrac12\,\omega \cdot "
-            r"I\,\omega$: "
-            "half the product of angular velocity and angular momentum."
+            "The kinetic energy of a body is the energy of its total mass at the centre of mass, plus the rotational "
+            r"energy $\tfrac12\,\omega \cdot I\,\omega$. The rotational energy is half the product of angular "
+            "velocity and angular momentum."
         ),
     )
     _sum(d)
@@ -39,7 +39,8 @@ def _sum(d: Derivation) -> None:
     point = Matrix(symbols.position)
     d.notation({"r": point, r"\omega": OMEGA, "c": ARM})
     d.step(
-        r"A particle at $r$ that turns with $\omega$.",
+        r"A particle at $r$ that moves with the angular velocity $\omega$ has a kinetic energy that is quadratic in "
+        r"$\omega$.",
         HALF * symbols.m * squared(OMEGA.cross(point)),
         HALF * OMEGA.dot(Matrix(inertia_of_point(symbols.m, point)) * OMEGA),
         because=r"$|\omega \times r|^2 = |\omega|^2 |r|^2 - (\omega \cdot r)^2$",
@@ -47,8 +48,8 @@ def _sum(d: Derivation) -> None:
         display=r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.passage(
-        r"Three particles stand for any number. Let the centre of mass move with $v$, and the particles be at $r_i$ "
-        r"from it:",
+        "The proof uses three particles and holds for any number. Let the centre of mass move with the velocity $v$, "
+        "and let particle $i$ be at $r_i$ from it:",
         (rf"{COUNT} m_i\,r_i", "0"),
         ("M", rf"{COUNT} m_i"),
     )
@@ -56,7 +57,8 @@ def _sum(d: Derivation) -> None:
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.notation({"I": tensor, "v": V, "M": sum(MASSES)})
     d.step(
-        "König's theorem: the energy of the centre, and the energy of turning about it.",
+        "König's theorem: the kinetic energy is that of the total mass at the centre of mass, plus the energy of the "
+        "rotation about the centre of mass.",
         HALF * sum(m * squared(V + OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
         HALF * sum(MASSES) * squared(V) + HALF * OMEGA.dot(tensor * OMEGA),
         because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",
@@ -66,22 +68,23 @@ def _sum(d: Derivation) -> None:
     )
     d.notation({"I": TENSOR, "I_O": Matrix(about_point(TENSOR, symbols.m, ARM))})
     d.step(
-        "If a point of the body is fixed, all energy is of turning about it, with the tensor about that point.",
+        "If a point of the body is fixed in space, the whole kinetic energy is the energy of the rotation about this "
+        "point, with the inertia tensor about this point.",
         HALF * symbols.m * squared(OMEGA.cross(ARM)) + HALF * OMEGA.dot(TENSOR * OMEGA),
         HALF * OMEGA.dot(Matrix(about_point(TENSOR, symbols.m, ARM)) * OMEGA),
-        because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$, and the tensor is "
-        "moved by the theorem of parallel axes",
+        because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$, and the parallel "
+        "axis theorem gives the tensor about the fixed point",
         named=r"\tfrac12\,m\,|\omega \times c|^2 + \tfrac12\,\omega \cdot I\,\omega",
         display=r"\tfrac12\,\omega \cdot I_O\,\omega",
     )
 
 
 def _forms(d: Derivation) -> None:
-    d.section("Its forms")
+    d.section("Other forms of the rotational energy")
     energy = HALF * OMEGA.dot(TENSOR * OMEGA)
     d.notation({"T": energy, "I": TENSOR, r"\omega": OMEGA, "n": Matrix(symbols.axis), r"\Omega": symbols.Omega})
     d.step(
-        "Its gradient is the angular momentum.",
+        "The gradient of the kinetic energy with respect to the angular velocity is the angular momentum.",
         Matrix([energy.diff(w) for w in OMEGA]),
         TENSOR * OMEGA,
         because="the inertia tensor is symmetric",
@@ -90,7 +93,7 @@ def _forms(d: Derivation) -> None:
     )
     axis = Matrix(symbols.axis)
     d.step(
-        "About an axis $n$ only the moment about that axis counts.",
+        "For rotation about an axis $n$, the energy depends only on the moment of inertia about this axis.",
         energy.subs(dict(zip(OMEGA, symbols.Omega * axis, strict=True)), simultaneous=True),
         HALF * axis.dot(TENSOR * axis) * symbols.Omega**2,
         because=r"$\omega = \Omega\,n$",
@@ -101,7 +104,7 @@ def _forms(d: Derivation) -> None:
     turned = dcm_sb * TENSOR * dcm_sb.T
     d.notation({r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
     d.step(
-        "It is the same in the axes of space, where the tensor changes with time.",
+        "The kinetic energy is the same in space axes, where the inertia tensor changes with time.",
         HALF * (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
         energy,
         because=r"$R^{\mathsf T} R = 1$ is applied twice",
@@ -113,7 +116,7 @@ def _forms(d: Derivation) -> None:
     momentum = principal * OMEGA
     d.notation({f"L_{n + 1}": momentum[n] for n in range(3)})
     d.step(
-        "Along principal axes, in angular velocity and in angular momentum.",
+        "Along principal axes, the energy is a sum of squares of the angular velocities, or of the angular momenta.",
         HALF * OMEGA.dot(momentum),
         HALF * momentum.dot(principal.inv() * momentum),
         because=r"$\omega = I^{-1} L$",
@@ -131,7 +134,7 @@ def _angles(d: Derivation) -> None:
     dphi, dtheta, dpsi = symbols.angle_rates
     d.names.pop("T")
     d.step(
-        "Three different moments.",
+        "The kinetic energy of a body with three different moments is:",
         HALF * omega.dot(diag(a, b, c) * omega),
         HALF * a * (dphi * sin(theta) * sin(psi) + dtheta * cos(psi)) ** 2
         + HALF * b * (dphi * sin(theta) * cos(psi) - dtheta * sin(psi)) ** 2
@@ -140,14 +143,14 @@ def _angles(d: Derivation) -> None:
         named="T",
     )
     d.step(
-        "Two equal moments: the spin angle is gone.",
+        "With two equal moments, the spin angle does not occur in the energy.",
         HALF * omega.dot(diag(a, a, c) * omega),
         HALF * a * (dtheta**2 + dphi**2 * sin(theta) ** 2) + HALF * c * (dpsi + dphi * cos(theta)) ** 2,
         because=r"$\sin^2\psi + \cos^2\psi = 1$",
         named="T",
     )
     d.step(
-        "A sphere: it has no axis, and precession and spin enter alike.",
+        "With three equal moments, precession and spin occur in the same way, since no body axis is distinguished.",
         HALF * omega.dot(diag(a, a, a) * omega),
         HALF * a * (dphi**2 + dtheta**2 + dpsi**2 + 2 * dphi * dpsi * cos(theta)),
         because=r"$T = \tfrac12 A\,|\omega|^2$",

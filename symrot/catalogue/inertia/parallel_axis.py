@@ -16,17 +16,18 @@ def derive() -> Derivation:
         title="Parallel axes, for the full tensor",
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 5.3",
         about=(
-            "The tensor about a point is the tensor about the centre of mass plus that of the whole mass put at the "
-            "centre of mass. One point of the body is enough for the proof; the body is a sum of points."
+            "The inertia tensor about a point is the tensor about the centre of mass plus the tensor of the total "
+            "mass placed at the centre of mass. The proof treats one point of the body; the body is a sum of points."
         ),
     )
     mass = symbols.m
     here, there = Matrix(inertia_of_point(mass, R)), Matrix(inertia_of_point(mass, R + D))
-    d.define("A point of mass $m$ at $r = (x, y, z)$ from the centre of mass of the body has the tensor", "I(r)", here)
+    d.define("A point of mass $m$ at $r = (x, y, z)$ from the centre of mass has the inertia tensor", "I(r)", here)
     crossed = there - here - Matrix(inertia_of_point(mass, D))
     linear = mass * (2 * D.dot(R) * Matrix.eye(3) - D * R.T - R * D.T)
     d.step(
-        "Seen from a point at $-d$, it has its own tensor, the tensor of the offset, and a part linear in $r$.",
+        "About a reference point at $-d$, the mass has the tensor $I(r)$, plus the tensor $I(d)$, plus a term that is "
+        "linear in $r$.",
         crossed,
         linear,
         because=r"the inertia tensor is quadratic in $r + d$",
@@ -35,39 +36,41 @@ def derive() -> Derivation:
     )
     second = Matrix(symbols.corners[:3])
     d.step(
-        r"The linear part is additive, so summed over the body it is the linear part at $\sum m\,r = 0$.",
+        r"The linear term $F$ is additive. Its sum over the body is therefore $F$ at $\sum m\,r$, which is zero "
+        "because $r$ is measured from the centre of mass.",
         linear.subs(dict(zip(R, R + second, strict=True)), simultaneous=True),
         linear + linear.subs(dict(zip(R, second, strict=True)), simultaneous=True),
-        because="the mixed part is linear in the positions",
+        because="every entry of $F$ is linear in the position",
         named="F(r + r')",
         display="F(r) + F(r')",
     )
     d.step(
-        "There it vanishes: this is the theorem of parallel axes.",
+        "At zero the linear term vanishes. This proves the theorem of parallel axes.",
         linear.subs(dict.fromkeys(R, S.Zero)),
         0,
         because="the positions are measured from the centre of mass",
         named=r"F\left(\textstyle\sum m\,r\right)",
     )
     d.step(
-        "For a body of mass $m$ with the tensor $I$ about its centre of mass:",
+        "A body of mass $m$ with the tensor $I$ about its centre of mass has this tensor about a point at the offset "
+        "$d$.",
         Matrix(about_point(TENSOR, mass, D)),
         TENSOR + mass * (D.dot(D) * Matrix.eye(3) - D * D.T),
         because="the inertia tensor of a body is the sum over its points",
         named="I_O",
     )
     d.step(
-        "The way back.",
+        "Conversely, the tensor about the centre of mass follows from the tensor about another point.",
         Matrix(about_center_of_mass(about_point(TENSOR, mass, D), mass, D)),
         TENSOR,
         because="the term of the parallel axis theorem is subtracted",
         named=r"I_O - m \left( |d|^2\,\mathbf{1} - d\,d^{\mathsf T} \right)",
     )
     d.step(
-        "No axis through the centre of mass has a parallel one with a smaller moment.",
+        "Among all parallel axes, the axis through the centre of mass has the smallest moment.",
         (Matrix(about_point(TENSOR, mass, D)) - TENSOR)[2, 2],
         mass * (symbols.d_x**2 + symbols.d_y**2),
-        because="the term added on the diagonal is the mass times the squared distance of the axes",
+        because="the added term on the diagonal is the mass times the squared distance between the axes",
         named=r"(I_O - I)_{zz}",
     )
     return d

@@ -19,7 +19,8 @@ MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
 LONG = 300  # characters of LaTeX
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
-"""With one corner at the origin and three edges along the axes; the general one is a linear image of it."""
+"Tetrahedron with one corner at the origin and three edges along the axes; every other tetrahedron is a linear image "
+"of it."
 
 Moments = dict[tuple[int, ...], Expr]
 
@@ -32,16 +33,15 @@ def derive() -> Derivation:
         "Safko, "
         "*Classical Mechanics*, 3rd ed., section 5.3",
         about=(
-            r"A uniform body of mass $m$ is swept out by a map of coordinates with constant limits. Its measure, "
-            "centre of mass and second moments are iterated integrals over the map's Jacobian, the innermost first; "
-            "each antiderivative is found and proven by differentiating it. The tensor about the centre of mass "
-            "follows "
-            "from the second moments."
+            "A map from coordinates with given limits describes each uniform body of mass $m$. Its measure (volume, "
+            "area or length), centre of mass and second moments are iterated integrals of the map's Jacobian, "
+            "computed from the innermost integral outward. Each antiderivative is proven by differentiation. The "
+            "inertia tensor about the centre of mass follows from the second moments."
         ),
     )
     d.passage(
-        r"With the second moments $S_{xy} = \int x\,y\,dm$ about the origin of the axes shown, and the centre of "
-        "mass at $c$, the tensor about the centre of mass is",
+        r"Let $S_{xy} = \int x\,y\,dm$ and so on be the second moments about the origin of the given axes, and $c$ "
+        "the centre of mass. Then the inertia tensor about the centre of mass is",
         ("I", r"\mathrm{tr}\,S\;\mathbf{1} - S - m \left( |c|^2\,\mathbf{1} - c\,c^{\mathsf T} \right)"),
     )
     for name, shape in SHAPES.items():
@@ -61,7 +61,7 @@ def _shape(d: Derivation, body: Solid) -> None:
     )
     columns = body.position.jacobian(coordinates)
     d.step(
-        "The Jacobian.",
+        "The Jacobian of the map is:",
         (columns.T * columns).det(method="berkowitz"),
         body.jacobian**2,
         because="the square of the measure of a cell is the determinant of the scalar products of its edges",
@@ -72,7 +72,7 @@ def _shape(d: Derivation, body: Solid) -> None:
         display=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
     )
     d.step(
-        "Its measure.",
+        "The measure of the body is:",
         _integral(body, ()),
         body.measure,
         because=_antiderivatives(body, ()),
@@ -96,17 +96,17 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
     zero = [axes for axes in products if values[_quantity(axes)] == 0]
     if zero:
         d.step(
-            "Of the first and second moments these vanish.",
+            "These first and second moments are zero.",
             Matrix([moments[axes] for axes in zero]),
             0,
-            because="each of these integrals, done like the following ones, is zero",
+            because="each of these integrals is zero; they are computed like the following integrals",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip
     for axes in products:
         if axes not in zero and len(axes) == 1:
             d.step(
-                f"The centre of mass along ${AXES[axes[0]]}$.",
+                f"The coordinate ${AXES[axes[0]]}$ of the centre of mass is:",
                 moments[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
                 because=_antiderivatives(body, axes),
@@ -115,7 +115,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
             )
         elif axes not in zero:
             d.step(
-                f"The second moment of ${_product(axes)}$.",
+                f"The second moment of ${_product(axes)}$ is:",
                 moments[axes],
                 values[_quantity(axes)],
                 because=_antiderivatives(body, axes),
@@ -132,7 +132,7 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
     center = Matrix([moments[i,] for i in range(3)]) / body.mass
     about_origin = second.trace() * eye(3) - second
     d.step(
-        "The tensor of inertia about the centre of mass.",
+        "The inertia tensor about the centre of mass is:",
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
         because="a moment is the integral of the sum of two squares, a product of inertia has a minus sign, "
@@ -166,9 +166,11 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
     """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
-    before = "" if constant == 1 else f", before the factor ${_latex(constant)}$"
+    before = "" if constant == 1 else f", without the constant factor ${_latex(constant)}$"
     if sum(map(len, formulas)) > LONG:
-        return f"antiderivatives, from the innermost integral outwards{before}, the last one {formulas[-1]}"
+        return (
+            f"the integrals are computed from the innermost outward{before}; the last antiderivative is {formulas[-1]}"
+        )
     return f"the antiderivatives are {', then '.join(formulas)}{before}"
 
 
@@ -178,7 +180,8 @@ def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))
         limits = f"from ${_latex(stage.lower)}$ to ${_latex(stage.upper)}$"
-        words = f"Over ${_latex(stage.variable)}$ {limits}, with the antiderivative ${_latex(stage.antiderivative)}$:"
+        antiderivative = f"with the antiderivative ${_latex(stage.antiderivative)}$"
+        words = f"Integration over ${_latex(stage.variable)}$ {limits}, {antiderivative}:"
         equations.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
     return equations
 

@@ -16,15 +16,15 @@ def derive() -> Derivation:
         title="The inertia tensor in other axes",
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 5.2",
         about=(
-            "Turning the axes by $R$ takes the tensor to $R\\,I\\,R^{\\mathsf T}$. One point of the body "
-            "proves it, for "
-            "every rotation; and as the body turns, its tensor in space changes by the commutator with $\\omega$."
+            "If $R$ maps body components to space components, the inertia tensor $I$ in body axes becomes "
+            r"$R\,I\,R^{\mathsf T}$ in space axes. The proof treats one point of the body and holds for every "
+            r"rotation. If the body rotates, the rate of its tensor in space is a commutator with $\omega$."
         ),
     )
     unit = [unit_relation()]
     dcm_sb, point = Matrix(quaternion_to_dcm()), Matrix(symbols.position)
     d.step(
-        "A point that is turned has the turned tensor.",
+        "The tensor of a rotated point is the rotated tensor.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),
         Matrix(rotate(inertia_of_point(symbols.m, point), dcm_sb)),
         because="$R$ preserves lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
@@ -40,15 +40,14 @@ def derive() -> Derivation:
         "The kinetic energy does not depend on the axes.",
         (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
         OMEGA.dot(TENSOR * OMEGA),
-        because="$R^{\\mathsf T} R = 1$, twice",
+        because=r"$R^{\mathsf T} R = 1$ is applied twice",
         relations=unit,
         named=r"\omega_s \cdot I_s\,\omega_s",
         display=r"\omega_b \cdot I_b\,\omega_b",
     )
     d.step(
-        "Nor does the trace; and as the square of the tensor turns in the same way, nor its trace: with "
-        "the determinant "
-        "they fix the principal moments.",
+        "The trace does not depend on the axes. Since $I^2$ is transformed in the same way, its trace does not depend "
+        "on them either. With the determinant, the two traces determine the principal moments.",
         turned.trace(),
         TENSOR.trace(),
         because="the trace of a product does not change under cyclic permutation of its factors",
@@ -58,7 +57,7 @@ def derive() -> Derivation:
     )
     omega_s = dcm_sb * OMEGA
     d.step(
-        "The tensor of a turning body, in space.",
+        "The tensor of a rotating body changes in space by a commutator with the angular velocity.",
         rate(turned, attitude_rates()),
         skew(omega_s) * turned - turned * skew(omega_s),
         because=r"$\dot R = [\omega_s]_\times R$",
@@ -69,8 +68,8 @@ def derive() -> Derivation:
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
     d.notation({}, motion)
     d.step(
-        "In the rate of angular momentum the changing tensor makes the gyroscopic term: Euler's equations, in axes of "
-        "space.",
+        "In the rate of the angular momentum, the rate of the tensor gives the gyroscopic term: this is Euler's "
+        "equation in space axes.",
         rate(turned, motion) * omega_s + turned * rate(omega_s, motion),
         turned * dcm_sb * Matrix(symbols.omega_rates) + omega_s.cross(turned * omega_s),
         because=r"$\left( [\omega]_\times I - I\,[\omega]_\times \right) \omega = \omega \times I\,\omega$, and "
@@ -81,7 +80,7 @@ def derive() -> Derivation:
     )
     d.notation({"I_s": dcm_sb * (symbols.A * eye(3)) * dcm_sb.T})
     d.step(
-        "It stays constant if the body is spherical.",
+        "The tensor of a spherical body is constant in space.",
         rate(dcm_sb * (symbols.A * eye(3)) * dcm_sb.T, attitude_rates()),
         0,
         because="a multiple of the unit matrix commutes with every matrix",

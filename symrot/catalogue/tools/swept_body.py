@@ -29,11 +29,12 @@ def far(d: Derivation) -> None:
 def _vector(d: Derivation) -> None:
     a, b, c = (indexed(name, K) for name in "abc")
     d.passage(
-        r"Let $a = \sum a_k v^k$, and so on; coefficients with a negative index are zero. What follows is the "
-        r"coefficient of $v^k$ in each of the three equations, which is zero."
+        r"Let $a = \sum a_k v^k$, $b = \sum b_k v^k$ and $c = \sum c_k v^k$; coefficients with a negative index are "
+        "zero. In each of the three equations for $a, b, c$ the coefficient of $v^k$ is zero. The following steps "
+        "compute these coefficients."
     )
     d.step(
-        "The first gives $c$ from $a$.",
+        "The first equation gives $c_k$ from $a_k$.",
         coefficient({"c": {0: S.One}, "a": {0: S.One, 1: 2 * V}}, V, K),
         c + (2 * K + 1) * a,
         because="the series is differentiated term by term",
@@ -41,7 +42,7 @@ def _vector(d: Derivation) -> None:
     )
     older = indexed("a", K, -2)
     d.step(
-        "The second gives how far $b$ is from $a$.",
+        "The second equation gives the difference of $b_k$ and $a_k$.",
         coefficient({"b": {0: S.One}, "a": {0: -S.One}, "c": {0: 3 * V**2, 1: 2 * V**3}}, V, K),
         b - a - (2 * K - 1) * (2 * K - 3) * older,
         because="the first equation gives $c_{k-2}$",
@@ -49,7 +50,8 @@ def _vector(d: Derivation) -> None:
         named=r"[v^k] \left( b - a + v^2 (3 c + 2 v c') \right)",
     )
     d.step(
-        "The third gives the next $b$ from that distance. These are all coefficients, one after another.",
+        "The third equation gives $b_{k+1}$ from this difference. So the equations give all coefficients one after "
+        "another.",
         coefficient({"b": {1: 2 * (1 - KAPPA**2 * V), 0: -(KAPPA**2)}, "c": {0: -(KAPPA**2)}}, V, K),
         2 * (K + 1) * indexed("b", K, 1) - KAPPA**2 * (2 * K + 1) * (b - a),
         because="the first equation gives $c_k$",
@@ -62,8 +64,8 @@ def _vector(d: Derivation) -> None:
     turn = Matrix([[X / R, 0, -KAPPA / R], [0, 1, 0], [KAPPA / R, 0, X / R]])
     d.notation({"m": turn * vector})
     d.step(
-        r"In the axes whose third lies along $(\kappa, 0, x)$ the vector is near that one; its first component is "
-        r"$v^2 g$ times $\kappa x / r^2$, with $g = 3 c + 2 v c'$.",
+        r"In axes whose third axis is along $(\kappa, 0, x)$, the vector $n$ is close to the third axis. Its first "
+        r"component is $v^2 g$ times $\kappa x / r^2$, with $g = 3 c + 2 v c'$.",
         turn * vector,
         Matrix(
             [
@@ -77,7 +79,7 @@ def _vector(d: Derivation) -> None:
         named="m",
     )
     d.step(
-        "The coefficients of $g$.",
+        "The coefficients of $g$ follow from those of $c$.",
         coefficient({"c": {0: S(3), 1: 2 * V}}, V, K),
         (2 * K + 3) * c,
         because="the series is differentiated term by term",
@@ -92,11 +94,11 @@ def _small_angle(d: Derivation) -> None:
     slope = square * (e - v * h) / (2 * (1 - square * v))
     motion = {X: S.One, R: X / R, e: moved * slope}
     d.passage(
-        r"The rate of the small angle is $\dot\phi\,m_2/(1 + m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let "
-        r"$\delta = \frac{x}{r} e(v)$, with $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
+        r"The small angle has the rate $\dot\phi\,m_2/(1 + m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let "
+        r"$\delta = \frac{x}{r} e(v)$, where $e$ satisfies $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
     )
     d.step(
-        "This is the small angle.",
+        r"Then $\delta$ has the rate of the small angle.",
         rate(X / R * e, motion).subs(h, -c / (1 + third)),
         -KAPPA / R**2 * (KAPPA / R**3 * c) / (1 + third),
         because=r"$\frac{d}{dx} \frac{x}{r} = \kappa^2 / r^3$, and $\dot v = -2 x v^2$",
@@ -104,8 +106,9 @@ def _small_angle(d: Derivation) -> None:
         named=r"\frac{d\delta}{dx}",
     )
     d.step(
-        r"Its coefficients from those of $h$: upwards from $e_0 = 0$, which counts the angle from infinity, or "
-        "downwards, which counts it from $x = 0$, where it is zero as an odd function.",
+        "The coefficients of $e$ follow from those of $h$. The recurrence is used with rising $k$ from $e_0 = 0$ "
+        "(then the angle is zero at infinity), or with falling $k$ (then it is zero at $x = 0$, since it is an odd "
+        "function).",
         coefficient({"e": {0: square, 1: -2 * (1 - square * V)}, "h": {0: -square * V}}, V, K),
         (2 * K + 1) * square * indexed("e", K) - 2 * (K + 1) * indexed("e", K, 1) - square * indexed("h", K, -1),
         because="the series is differentiated term by term",
@@ -122,11 +125,13 @@ def near(d: Derivation) -> None:
     second = {names[1]: {1: S(2), 0: I * (place + step)}, names[0]: {0: -KAPPA}}
     (a1, a, a0), (b1, b, b0) = ([indexed(name, K, shift) for shift in (1, 0, -1)] for name in names)
     d.passage(
-        r"In the same unit of time $2 \alpha' = i x \alpha - \kappa \beta$ and $2 \beta' = \kappa \alpha - i x \beta$. "
-        r"About a place $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = \sum \beta_k u^k$, $u = x - X$."
+        r"In the same unit of time, the attitude satisfies $2 \alpha' = i x \alpha - \kappa \beta$ and $2 \beta' = "
+        r"\kappa \alpha - i x \beta$. Near a time $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = \sum \beta_k u^k$ "
+        "with $u = x - X$."
     )
     d.step(
-        "Each coefficient follows from the two before, since these are zero.",
+        "The coefficient of $u^k$ in both equations is zero. So each coefficient of the series follows from the two "
+        "coefficients before it.",
         Matrix([coefficient(equation, step, K) for equation in (first, second)]),
         Matrix(
             [2 * (K + 1) * a1 - I * (place * a + a0) + KAPPA * b, 2 * (K + 1) * b1 + I * (place * b + b0) - KAPPA * a]
@@ -143,11 +148,12 @@ def near(d: Derivation) -> None:
     }
     pair = Matrix([there, -across])
     d.step(
-        r"Before resonance, $\alpha(-x)$ and $-\beta(-x)$ obey the same equations: from $\alpha = 1$, $\beta = 0$ at "
-        "$x = 0$ the attitude there differs in the sign of $q_1$ and $q_2$.",
+        r"Before resonance, $\alpha(-x)$ and $-\beta(-x)$ satisfy the same equations. So for the initial values "
+        r"$\alpha = 1$, $\beta = 0$ at $x = 0$, the attitudes at $x$ and $-x$ differ only in the sign of $q_1$ and "
+        "$q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
-        because="time and sweep both change their signs",
+        because="time and sweep both change sign",
         relations=[imaginary()],
         named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
     )
@@ -160,12 +166,12 @@ def weak(d: Derivation) -> None:
     f = sqrt(1 + 2 * c * h + h**2)
     start, speed, across, sweep, time = (Symbol(name) for name in ("Omega_0", "S_0", "W", "s", "t"))
     d.passage(
-        r"For a small sweep $s = \dot\Omega$ the phase from the start on is a small difference of large values of the "
-        r"formula above, and is found otherwise: with $S_0$ and $\Omega_0$ at the start, $W$ across, $c = "
-        r"\Omega_0/S_0$ and $h = s t / S_0$."
+        r"If the sweep $s = \dot\Omega$ is small, the formula above gives the phase since the start as a small "
+        r"difference of large numbers. Therefore a series is used. Let $S_0$ and $\Omega_0$ be the initial values, "
+        r"$W$ the transverse rate, $c = \Omega_0/S_0$ and $h = s t / S_0$."
     )
     d.step(
-        "The rate is $S_0 f$ with $f = \\sqrt{1 + 2 c h + h^2}$.",
+        r"The rate of the phase is $S_0 f$ with $f = \sqrt{1 + 2 c h + h^2}$.",
         (speed**2 * f**2).subs({c: start / speed, h: sweep * time / speed}),
         (start + sweep * time) ** 2 + across**2,
         because=r"$\Omega = \Omega_0 + s t$, $S_0^2 = \Omega_0^2 + W^2$",
@@ -174,18 +180,18 @@ def weak(d: Derivation) -> None:
     )
     d.notation({"f": f, "h": h, "c": c})
     d.step(
-        "It obeys a linear equation of the first order.",
+        "The function $f$ satisfies a linear differential equation of first order.",
         (1 + 2 * c * h + h**2) * f.diff(h),
         (c + h) * f,
-        because="a square root is differentiated",
+        because="the square root is differentiated",
         named=r"(1 + 2 c h + h^2)\,\frac{df}{dh}",
         display="(c + h)\\,f",
     )
     above, now, before = (indexed("a", K, shift) for shift in (1, 0, -1))
     recurrence = (K + 1) * above - (1 - 2 * K) * c * now - (2 - K) * before
     d.step(
-        r"With $f = \sum a_k h^k$ the coefficient of $h^k$ in it is zero: from $a_0 = 1$ and $a_{-1} = 0$ each follows "
-        "from the two before.",
+        r"Let $f = \sum a_k h^k$. The coefficient of $h^k$ in this equation is zero. So with $a_0 = 1$ and $a_{-1} = "
+        "0$, each coefficient follows from the two coefficients before it.",
         coefficient({"f": {1: 1 + 2 * c * h + h**2, 0: -(c + h)}}, h, K).subs(
             {indexed("f", K, shift): indexed("a", K, shift) for shift in (1, 0, -1)}
         ),
@@ -195,23 +201,23 @@ def weak(d: Derivation) -> None:
     )
     power = Symbol("h^k")
     d.step(
-        r"The phase from the start on is $S_0\,t \sum a_k h^k / (k + 1)$.",
+        r"The phase since the start is $S_0\,t \sum a_k h^k / (k + 1)$.",
         rate(time * power / (K + 1), {time: S.One, power: K * power / time}),
         power,
         because="$h$ is proportional to $t$, and the series is integrated term by term",
         named=r"\frac{d}{dt} \frac{t\,h^k}{k + 1}",
     )
     d.passage(
-        r"How much is left out after some terms is known: with Legendre's polynomials $P_k$ of $-c$, for "
-        r"which $(k + 1) P_{k+1} = -(2 k + 1) c P_k - k P_{k-1}$, it is $a_k = (P_{k-2} - P_k)/(2 k - 1)$ from $k = 2$ "
-        r"on, so that $|a_k| \le 2/(2 k - 1)$, $|c|$ being at most 1."
+        "The error after a finite number of terms has a bound. Let $P_k$ be Legendre's polynomials of $-c$, with $(k "
+        r"+ 1) P_{k+1} = -(2 k + 1) c P_k - k P_{k-1}$. Then $a_k = (P_{k-2} - P_k)/(2 k - 1)$ for $k \ge 2$, and so "
+        r"$|a_k| \le 2/(2 k - 1)$, since $|c|$ is at most 1."
     )
     solution = _by_legendre(c)
     d.step(
-        "These obey the recurrence.",
+        "These $a_k$ satisfy the recurrence.",
         recurrence.subs(solution),
         0,
-        because="the three Legendre polynomials follow from two that are neighbours",
+        because="all Legendre polynomials in it follow from two neighbouring ones",
         named=r"(k + 1)\,a_{k+1} - (1 - 2 k)\,c\,a_k - (2 - k)\,a_{k-1}",
     )
     legendre, series = {0: S.One, 1: -c}, {-1: S.Zero, 0: S.One}
@@ -219,7 +225,7 @@ def weak(d: Derivation) -> None:
         legendre[n + 1] = legendre.get(n + 1, (-(2 * n + 1) * c * legendre[n] - n * legendre.get(n - 1, 0)) / (n + 1))
         series[n + 1] = ((1 - 2 * n) * c * series[n] + (2 - n) * series[n - 1]) / (n + 1)
     d.step(
-        "And they are where it has come to at $k = 3$.",
+        "They also agree with the first coefficients from the recurrence, $a_2$ and $a_3$.",
         Matrix([(legendre[n - 2] - legendre[n]) / (2 * n - 1) for n in (2, 3)]),
         Matrix([series[2], series[3]]).expand(),
         because="the first four Legendre polynomials of $-c$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
@@ -245,13 +251,14 @@ def between(d: Derivation) -> None:
     z, root = (omega - start) / (2 * half), (speed + there) / (2 * half)
     squares = [speed**2 - omega**2 - across**2, there**2 - start**2 - across**2]
     d.passage(
-        r"From $\Omega_0$ at the start to $\Omega = \Omega_0 + s t$ the phase is $(\Omega S - \Omega_0 S_0 + W^2 (Z - "
-        r"Z_0))/(2 s)$. Let $E = S_0 S + \Omega_0 \Omega$, $D^2 = (W^2 + E)/2$ and $z = s t/(2 D)$."
+        r"Between the initial rate $\Omega_0$ and the rate $\Omega = \Omega_0 + s t$, the phase grows by $(\Omega S - "
+        r"\Omega_0 S_0 + W^2 (Z - Z_0))/(2 s)$. Let $E = S_0 S + \Omega_0 \Omega$, $D^2 = (W^2 + E)/2$ and $z = s "
+        "t/(2 D)$."
     )
     names = {"W": across, "S": speed, "S_0": there, r"\Omega": omega, r"\Omega_0": start}
     d.notation(names | {"E": together, "D": half, "z": z, "w": root})
     d.step(
-        r"The root $w$ of $1 + z^2$ is $(S + S_0)/(2 D)$, which is positive.",
+        "The square root $w$ of $1 + z^2$ is $(S + S_0)/(2 D)$, which is positive.",
         1 + z**2,
         root**2,
         because=r"$S^2 = \Omega^2 + W^2$ and $S_0^2 = \Omega_0^2 + W^2$",
@@ -260,8 +267,8 @@ def between(d: Derivation) -> None:
         display=r"\left( \frac{S + S_0}{2 D} \right)^2",
     )
     d.step(
-        r"So $Z - Z_0$ is twice the $\operatorname{arsinh}$ of $z$: both have one hyperbolic sine, $(\Omega S_0 - "
-        r"\Omega_0 S)/W^2$.",
+        r"So $Z - Z_0 = 2 \operatorname{arsinh} z$: both sides have the same hyperbolic sine, $(\Omega S_0 - \Omega_0 "
+        "S)/W^2$.",
         2 * across**2 * z * root,
         omega * there - start * speed,
         because=r"$\sinh 2x = 2 \sinh x \cosh x$, and $\Omega / W = \sinh Z$, $S / W = \cosh Z$",
@@ -269,11 +276,11 @@ def between(d: Derivation) -> None:
         named=r"2\,W^2\,z\,w",
     )
     d.step(
-        r"The phase is $\frac{t}{2 D} \left( E\,w + W^2 \operatorname{arsinh}(z)/z \right)$, in which "
-        "nothing cancels: both terms are positive.",
+        r"The phase is $\frac{t}{2 D} \left( E\,w + W^2 \operatorname{arsinh}(z)/z \right)$. Both terms are positive, "
+        "so no digits cancel.",
         together * z * root,
         (omega * speed - start * there) / 2,
-        because="the same two relations are substituted, and $t / (2 D) = z / s$",
+        because="the same two relations are inserted, and $t / (2 D) = z / s$",
         relations=squares,
         named=r"E\,z\,w",
         display=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",

@@ -270,8 +270,8 @@ class _EqualityProver:
         terms = [abs(a) * split**k for k, a in enumerate(exact)]
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
             raise CertificateError(
-                f"{self.operations.name}: expected a series whose terms decrease up to x^2 = {split}, "
-                "got a series whose terms do not"
+                f"{self.operations.name}: expected a series whose terms alternate in sign and decrease up to "
+                f"x^2 = {split}, got a series without this property"
             )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 

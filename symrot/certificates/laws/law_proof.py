@@ -331,7 +331,10 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of the base angle for a monomial; raise BaseAngleTooLarge if it must be smaller."""
+        """Return the c for which ``c*unit`` is a base angle, such as 1/2 for x/2.
+
+        Raise BaseAngleTooLarge if ``coefficient*unit`` is no integer multiple of this base angle.
+        """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(
@@ -384,9 +387,10 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Divide a polynomial by the relations, and write the remainder with hypotheses times cofactors of a degree.
+        """Write a polynomial as a sum of cofactors times relations and hypotheses; return the cofactors and the rest.
 
-        Return the cofactors of relations and hypotheses, and what remains: zero, or the remainder of the division.
+        The cofactors of the hypotheses have at most the degree ``degree``. The rest is zero if such cofactors exist,
+        otherwise it is the remainder of the division by the relations alone.
         """
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)

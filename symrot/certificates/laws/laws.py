@@ -149,5 +149,8 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return the names of generators that a proof may use; the last comes first, so that later generators lead."""
+    """Return names for the generators of a proof, ``g0_`` last: later generators come first in the order of variables.
+
+    A relation of a generator, such as ``r^2 = P``, then has the newest generator in its leading term.
+    """
     return [f"g{k}_" for k in reversed(range(size))]

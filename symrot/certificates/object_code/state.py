@@ -207,7 +207,7 @@ class MachineState:
             if not 0 <= offset < array.size:
                 raise NotUnderstood(f"expected a read inside the array {array.name}, got the offset {offset}")
             if array.is_output:
-                raise NotUnderstood(f"expected {array.name} to be written before it is read, got a read before")
+                raise NotUnderstood(f"expected a write to {array.name} before it is read, got a read first")
             size = self.context.width // 8
             place = terms.input(self.context.width, f"{array.name}[{offset // size}]")
             return terms.word(place, offset % size // 4) if size == 8 else place

@@ -67,7 +67,7 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
     body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
     parts = _HEAD.split(body)
     if parts[0].strip() or len(parts) < 4:
-        raise CertificateError(f"{where}: expected a JavaScript module that defines functions alone")
+        raise CertificateError(f"{where}: expected a JavaScript module that contains functions alone")
     functions = []
     for function, arguments, content in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
         names = arguments.split(", ") if arguments else []
@@ -80,7 +80,7 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
-    """Return the head of the C function, if the JavaScript function has the same arguments."""
+    """Return the head of the C function; raise CertificateError unless the JavaScript function has its arguments."""
     expected = [parameter.name for parameter in model.parameters]
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")

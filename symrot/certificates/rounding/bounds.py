@@ -121,7 +121,7 @@ def bound_tasks(
     if strangers:
         known = ", ".join(operations.inputs)
         raise InputError(
-            f"{operations.name}: expected only inputs {known} in the groups of inputs with unit norm, "
+            f"{operations.name}: expected groups of inputs with unit norm to contain only the inputs {known}, "
             f"got {strangers[0]}"
         )
     tasks_by_output = {}
@@ -365,13 +365,13 @@ def check_section(
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
         raise CertificateError(
-            f"expected a section of rounding bounds, got a section in which this is missing or wrong: {error}"
+            f"expected a section of rounding bounds with all its parts, got a section with a fault ({error})"
         ) from None
     if precisions != list(kernels):
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
     head = _section_head(box, region, budget, libm_ulp)
     if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
-        raise CertificateError("expected a box and assumptions in the printed form, got another form")
+        raise CertificateError("expected box and assumptions in the form in which symrot prints them, got another form")
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
 
@@ -402,7 +402,7 @@ def check_bounds(
         unit, libm_ulp = 2.0 ** -DIGITS[operations.precision], float.fromhex(section["libm_ulp"])
         if not _alike({**part, "outputs": []}, _precision_part(operations, [])):
             raise CertificateError(
-                f"{operations.name}: expected the bounds of a precision in the printed form, got another form"
+                f"{operations.name}: expected bounds in the form in which symrot prints them, got another form"
             )
         tasks_by_output = bound_tasks(operations, box, region, section["budget"], libm_ulp)
         for item, (place, task) in zip(part["outputs"], tasks_by_output.items(), strict=True):
@@ -412,8 +412,8 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected the bound of {place} that a new search finds on the box of the "
-                    f"certificate, {recomputed['units']} units, got another ({item['units']} units)"
+                    f"{operations.name}: expected the data on {place} that a new search on the certified box computes "
+                    f"(a bound of {recomputed['units']} units), got other data (a bound of {item['units']} units)"
                 )
 
 

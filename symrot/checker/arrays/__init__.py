@@ -1,1 +1,1 @@
-"""Vectors, matrices, quaternions and complex numbers that a text uses without a definition."""
+"""Vectors, matrices, quaternions and complex numbers in texts that do not define their components."""

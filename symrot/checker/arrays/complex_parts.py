@@ -1,4 +1,4 @@
-"""The real and imaginary parts of formulas such as ``exp(i*x)``, as trees: equal formulas have equal parts."""
+"""Splitting formulas such as ``exp(i*x)`` into real and imaginary parts, as trees: equal formulas have equal parts."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -10,7 +10,7 @@ from typing import ClassVar
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError, complaint
 
-__all__ = ["imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
+__all__ = ["BAR", "imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
 
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)
@@ -38,12 +38,12 @@ MOST_FACTORS = 16
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
 
-    The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and cosines.
-    A letter i or j in a sum ``x + i*y`` is the imaginary unit if the formulas have a part, the conjugate or the
-    absolute value of a name or of a formula with this letter, or a name of a complex number, such as z.
-    A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``), if the formulas have a sum and
-    its conjugate, or a power of ``x + i*y``, or if they have circular and hyperbolic functions and it is inside one of
-    these.
+    The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and
+    cosines. A letter i or j in a sum ``x + i*y`` is the imaginary unit if the formulas contain the real part, the
+    imaginary part, the conjugate or the absolute value of a name or of a formula with this letter, or the name of a
+    complex number, such as z. A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``),
+    if the formulas have a sum and its conjugate, or a power of ``x + i*y``, or if they have circular and hyperbolic
+    functions and the letter is inside one of these.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
@@ -58,7 +58,7 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter that can only be the imaginary unit, because of the other formulas; or None."""
+    """Return the node of a letter that the other formulas show to be the imaginary unit; None if they do not."""
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
@@ -89,7 +89,7 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
 
 
 def _pair(node: Node, letter: str) -> frozenset[str]:
-    """Return the names x and y of a sum ``x + i*y`` or ``x - i*y``; an empty set for any other sum."""
+    """Return the names x and y if a sum is ``x + i*y`` or ``x - i*y``; an empty set for any other sum."""
     first, *rest = map(_without_sign, node.args)
     if len(rest) != 1 or first.kind != "name" or rest[0].kind != "product" or len(rest[0].args) != 2:
         return frozenset()
@@ -98,7 +98,7 @@ def _pair(node: Node, letter: str) -> frozenset[str]:
 
 
 def _has_factor(node: Node, letter: str) -> bool:
-    """Return whether one term of a sum is the letter, or a product with it, and another term is neither."""
+    """Return whether a sum has a term with the letter as a factor and a term without it, as ``x + i*y`` has for i."""
     factors = [term.args if term.kind == "product" else (term,) for term in map(_without_sign, node.args)]
     return len({any((f.kind, f.value) == ("name", letter) for f in own) for own in factors}) == 2
 
@@ -108,7 +108,7 @@ def _without_sign(term: Node) -> Node:
 
 
 def _is_of_complex(node: Node, letter: str) -> bool:
-    """Return whether a formula is a part, the conjugate or the absolute value of a complex number."""
+    """Return whether a formula is the real part, imaginary part, conjugate or absolute value of a complex number."""
     if node.kind == "name" and str(node.value).endswith(BAR):
         return True
     argument = node.args[0] if node.kind == "call" and node.value in OF_COMPLEX else None
@@ -116,7 +116,7 @@ def _is_of_complex(node: Node, letter: str) -> bool:
 
 
 def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree with the formulas of complex numbers in place of their names; ``z_bar`` is the conjugate of z."""
+    """Return a tree with the formulas of complex numbers in place of their names; ``z_bar`` becomes a conjugate."""
     if tree.kind == "name" and tree.value in numbers:
         return numbers[str(tree.value)]
     if tree.kind == "name" and (name := str(tree.value).removesuffix(BAR)) in numbers:
@@ -125,11 +125,11 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 
 
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
-    """Return the names of complex numbers without a definition, such as z in ``|z|^2 = z z_bar``, as ``Re_z + i*Im_z``.
+    """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
 
-    A name such as z or w_1 is one if the formulas have the conjugate, the real or the imaginary part of such a name;
-    ``z_bar`` next to ``z`` is a conjugate if the formulas have an absolute value or a part. In formulas with integrals
-    or other bars it is the place of a centre.
+    A name such as z or w_1 is one if the formulas have the conjugate, the real or the imaginary part of such a
+    name; ``z_bar`` next to ``z`` is a conjugate if the formulas have an absolute value or a part. In formulas with
+    integrals or with other barred names, ``z_bar`` is a coordinate of a centre of mass.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]
@@ -151,12 +151,12 @@ def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]
 
 
 def _conjugate(node: Node, letter: str) -> Node:
-    """Return a sum in which the terms with the imaginary unit have the other sign."""
+    """Return the conjugate of a sum: the terms with the imaginary unit change sign."""
     return sum_of([negated(term) if _letter_in(term, letter) else term for term in node.args], node.span)
 
 
 def _exponent(node: Node) -> Node | None:
-    """Return x of exp(x) and of e^x; None for any other formula."""
+    """Return x if a formula is exp(x) or e^x; None for any other formula."""
     if node.kind == "call" and node.value == "exp" and node.args:
         return node.args[0]
     is_power = node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e")
@@ -175,17 +175,17 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 
 
 def is_complex(sides: Sequence[Node], letter: str) -> bool:
-    """Return whether an equation has the imaginary unit, or a part or conjugate of a number."""
+    """Return whether an equation has the imaginary unit, or the real part, imaginary part or conjugate of a number."""
     return any(
         _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
     )
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return an equation of two columns, each with the real and the imaginary part of one side.
+    """Return an equation of two columns (real part, imaginary part), one column for each side of a complex equation.
 
-    A side that is a single name stays as it is, since such an equation only names the other side, or says that its
-    imaginary part is zero.
+    A side that is a single name stays as it is: such an equation only names the other side, or says that the
+    imaginary part of the other side is zero.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def _square(a: Node) -> Node:
 
 
 class _Splitter:
-    """The rules by which formulas are split into parts; every letter other than the imaginary unit is real."""
+    """The rules that split formulas into real and imaginary parts; every letter but the imaginary unit is real."""
 
     def __init__(self, letter: str, source: str) -> None:
         self.letter, self.source = letter, source
@@ -301,6 +301,11 @@ class _Splitter:
         ((a, b),) = inner
         return a, negated(b)
 
+    def angle(self, node: Node, inner: Sequence[Parts]) -> Parts:
+        if any(not _is_zero(b) for _, b in inner):
+            raise self.fail(node, "real numbers in atan2")
+        return Node("call", "atan2", tuple(a for a, _ in inner)), ZERO
+
     def sine(self, node: Node, inner: Sequence[Parts]) -> Parts:
         ((a, b),) = inner
         return _of(_call("sin", a), _call("cosh", b)), _of(_call("cos", a), _call("sinh", b))
@@ -326,6 +331,7 @@ class _Splitter:
     rules: ClassVar[Mapping[str, Callable[["_Splitter", Node, Sequence[Parts]], Parts]]] = {
         "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power, "abs": absolute,
         "real_part": real_part, "imaginary_part": imaginary_part, "conjugate": conjugate, "sin": sine,
+        "atan2": angle,
         "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
     """Kind of a formula, or the function that it calls -> the rule for its parts."""

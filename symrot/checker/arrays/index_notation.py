@@ -11,21 +11,25 @@ from dataclasses import replace
 from itertools import product as combinations
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.checker.claim.vectors import MARK
 from symrot.errors import InputError
 
-__all__ = ["has_index_symbols", "written_out"]
+__all__ = ["component_of_cross", "has_index_symbols", "written_out"]
 
 Relation = tuple[str, Node, Node]
 INDEXED = re.compile(r"([A-Za-z]+)_([i-np-s]{1,4})")
 SYMBOLS = {"delta": 2, "epsilon": 3}
 """Symbol -> the number of its indices."""
 
+OF_PAULI = frozenset({"sigma", "i", "I"})
+"""The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""
+
 MOST_ENTRIES, WIDTH = 81, 9
 """The most terms of a sum, and of entries of an equation; the number of entries in a row of its matrix."""
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation in index notation, written out in components, and a note; any other equation unchanged.
+    """Return an equation in index notation written out in components, and a note; return any other equation unchanged.
 
     Raises
     ------
@@ -41,18 +45,37 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
         *_, few, many = sorted(("".join(indices) or "none" for indices in free), key=len)
         raise InputError(f"expected the same free indices in each term, got {few} in one term and {many} in another")
     (indices,) = free
+    name = next((side for side in (left, right) if _is_component(side, right if side is left else left)), None)
+    indices = indices if name is None else tuple(_indices(name))
     if 3 ** len(indices) > MOST_ENTRIES:
         raise InputError(f"expected at most 4 free indices, got {len(indices)}: {', '.join(indices)}")
     values = [dict(zip(indices, choice, strict=True)) for choice in combinations("123", repeat=len(indices))]
     lefts, rights = ([_component(side, value) for value in values] for side in (left, right))
-    first, second = (entries[0] if not indices else _matrix(entries) for entries in (lefts, rights))
+    is_pauli = "sigma" in {*_quantities(left), *_quantities(right)}  # each entry is then a matrix itself
+    width = 3 if is_pauli else WIDTH
+    if name is not None and len(indices) < 3:
+        width, stem = (1, 3)[len(indices) - 1], Node("name", str(name.value).rpartition("_")[0])
+        lefts, rights = ([stem], rights) if name is left else (lefts, [stem])
+    first, second = (entries[0] if len(entries) == 1 else _matrix(entries, width) for entries in (lefts, rights))
     take = "takes" if len(indices) == 1 else "take"
     free_words = f"; {', '.join(indices)} {take} every value" if indices else ""
     return (sign, first, second), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
 
 
+def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
+    """Return ``(a × b)_i`` with epsilon and two summed indices that are not ``used``; None for a cross of formulas."""
+    left, right = pair
+    free = [letter for letter in "pqrskjlmni" if letter not in used + index]
+    if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
+        return None
+    j, k = free[:2]
+    return product([Node("name", f"epsilon_{index}{j}{k}"), *(
+        Node("name", f"{str(vector.value).removesuffix(MARK)}_{n}") for vector, n in ((left, j), (right, k))
+    )])  # fmt: skip
+
+
 def has_index_symbols(relation: Relation) -> bool:
-    """Return whether an equation has delta_ij or epsilon_ijk, which :func:`written_out` leaves in conditions only."""
+    """Return whether an equation has delta_ij or epsilon_ijk; :func:`written_out` leaves these only in conditions."""
     return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
 
 
@@ -68,21 +91,30 @@ def _indices(node: Node) -> str:
 
 
 def _is_condition(left: Node, right: Node) -> bool:
-    """Return whether an equation gives a formula for a quantity, or restricts quantities: R_ik R_jk = delta_ij.
+    """Return whether an equation is no identity: it defines a quantity or restricts some, as R_ik R_jk = delta_ij does.
 
     An identity has the same quantities on both sides, or zero on one side and a quantity twice on the other.
     """
-    if any(side.kind == "name" and not _symbol(side) for side in (left, right)):
-        return True
     own = [Counter(_quantities(side)) for side in (left, right)]
+    if "sigma" in (names := {*own[0], *own[1]}) and names <= OF_PAULI:
+        return False
     for side, other in ((0, 1), (1, 0)):
+        if _is_component((left, right)[side], (left, right)[other]):
+            return False
         if (left, right)[side] == number(0):
             return not any(count > 1 for count in own[other].values())
     return {*own[0]} != {*own[1]}
 
 
+def _is_component(side: Node, other: Node) -> bool:
+    """Return whether an equation gives a formula, without the quantity v, for the components v_i."""
+    if not _indices(side) or _symbol(side):
+        return False
+    return str(side.value).rpartition("_")[0] not in {*_quantities(other)}
+
+
 def _quantities(side: Node) -> Iterator[str]:
-    """Yield the letters of a side, without their indices, except delta and epsilon."""
+    """Yield the names of the quantities on a side, without indices: R for R_ij. Delta and epsilon are left out."""
     for _, node in walk(side):
         if node.kind == "name" and not _symbol(node) and node.value != "pi":
             yield str(node.value).rpartition("_")[0] if _indices(node) else str(node.value)
@@ -107,13 +139,23 @@ def _flat(factors: Sequence[Node]) -> Node:
 
 
 def _counts(term: Node) -> Counter[str]:
-    """Return how often each index occurs in a term; in a square each occurs twice as often."""
+    """Return how often each index occurs in a term; an index inside a square counts twice."""
     counts: Counter[str] = Counter(_indices(term))
     for part in term.args:
-        own = _counts(part)
+        own = _counts_of_terms(part) if term.value == "integral_over_body" else _counts(part)
         is_square = term.kind == "power" and part is term.args[0] and term.args[1] == number(2)
         counts.update(own + own if is_square else own)
     return counts
+
+
+def _counts_of_terms(integrand: Node) -> Counter[str]:
+    """Return the free indices of an integrand, each once; the sums in its terms are written out inside of it."""
+    free = [_once(_counts(term)) for term in _terms(integrand)]
+    return free[0] if len({frozenset(own) for own in free}) == 1 else sum(free, Counter())
+
+
+def _once(counts: Counter[str]) -> Counter[str]:
+    return Counter({index: count for index, count in counts.items() if count == 1})
 
 
 def _free(term: Node) -> tuple[str, ...]:
@@ -126,7 +168,7 @@ def _free(term: Node) -> tuple[str, ...]:
 
 
 def _component(side: Node, values: Mapping[str, str]) -> Node:
-    """Return a side with values for its free indices, and with its sums written out."""
+    """Return a side with numbers for its free indices and with its sums written out: one component of the equation."""
     if side.kind == "sum":
         return sum_of([_component(part, values) for part in side.args])
     if side.kind == "neg":
@@ -151,7 +193,9 @@ def _component(side: Node, values: Mapping[str, str]) -> Node:
 
 
 def _with_values(term: Node, values: Mapping[str, str]) -> Node:
-    """Return a term with numbers in place of its indices; zero if a factor is zero."""
+    """Return a term with numbers in place of its indices; zero if one of its factors is zero."""
+    if term.kind == "call" and term.value == "integral_over_body":
+        return replace(term, args=tuple(_as_coordinates(_component(part, values)) for part in term.args))
     if indices := _indices(term):
         digits = "".join(values[index] for index in indices)
         if _symbol(term):
@@ -163,6 +207,15 @@ def _with_values(term: Node, values: Mapping[str, str]) -> Node:
     return replace(term, args=args)
 
 
+def _as_coordinates(tree: Node) -> Node:
+    """Return the integrand of an integral over a body with x, y, z for x_1, x_2, x_3, and x² + y² + z² for r²."""
+    if tree.kind == "name" and (match := re.fullmatch("[xr]_([123])", str(tree.value))):
+        return replace(tree, value="xyz"[int(match[1]) - 1])
+    if tree.kind == "power" and tree.args == (Node("name", "r"), number(2)):
+        return sum_of([Node("power", None, (Node("name", axis), number(2))) for axis in "xyz"])
+    return replace(tree, args=tuple(map(_as_coordinates, tree.args)))
+
+
 def _delta(digits: str) -> int:
     return int(digits[0] == digits[1])
 
@@ -172,8 +225,8 @@ def _epsilon(digits: str) -> int:
     return (j - i) * (k - j) * (k - i) // 2
 
 
-def _matrix(entries: Sequence[Node]) -> Node:
-    rows = [entries[n : n + WIDTH] for n in range(0, len(entries), WIDTH)]
+def _matrix(entries: Sequence[Node], width: int) -> Node:
+    rows = [entries[n : n + width] for n in range(0, len(entries), width)]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
 
 

@@ -1,4 +1,4 @@
-"""Names that a text uses as matrices and columns without a definition, and names of vectors that mean lengths.
+"""Names that a text uses as matrices, columns or lengths of vectors, although it does not define them.
 
 ``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` make matrices of 3 x 3 entries of the capital letters; a small letter
 with a transpose is a column.
@@ -26,19 +26,19 @@ TIME = Node("name", "t")
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
-    """Return the tree of a matrix with the entries A_11, A_12 and so on, which depend on time if it is ``timed``."""
+    """Return the tree of a 3 x 3 matrix with the entries A_11, A_12 and so on, functions of time if it is ``timed``."""
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
 
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
-    """Return the names that are defined as matrices of 3 x 3 independent entries."""
+    """Return the names that are defined as 3 x 3 matrices whose entries are independent symbols."""
     return [name for name, tree in definitions if tree == matrix_of_entries(name)]
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions in which the matrices ``names`` are general rotations."""
+    """Return definitions that make the matrices ``names`` rotations: products of three rotations by any angles."""
     return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
 
 
@@ -53,9 +53,9 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the names, in capital letters, that the sides of a claim use as matrices and that are not ``known``.
+    """Return the capital letters that a claim uses as matrices, without the ``known`` ones, which it defines.
 
-    The name of the unit matrix is not among them, unless it is the only argument of a determinant or trace.
+    The name of the unit matrix is left out, unless it is the only argument of a determinant or trace.
     """
     names: dict[str, None] = {}
     for side in sides:
@@ -71,7 +71,7 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return the names of vectors, in capital letters, that are in fact matrices, and whether each depends on time.
+    """Return the bold capital letters that are matrices and not vectors, each with whether it depends on time.
 
     Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``, or the
     argument of a determinant or trace.
@@ -85,14 +85,16 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
             name = _name_of_array(first)
-            if name[:1].isupper() and name in vectors and not is_tensor(name) and _is_array(second, vectors):
+            is_vector = Node("call", "dot", (first, second)) in nodes  # F·d = F d cos θ
+            is_capital = name[:1].isupper() and name in vectors and not is_tensor(name)
+            if is_capital and _is_array(second, vectors) and not is_vector:
                 rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
                 matrices[name] = name in rates
     return matrices
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return the matrices R of ``R' = skew(w) R`` and ``R_dot = R skew(w)``, and whether each depends on time."""
+    """Return the matrices R of equations such as ``R' = skew(w) R``, each with whether it depends on time."""
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         is_rate = side.kind == "call" and side.value == "diff" and len(side.args) == 2
@@ -108,20 +110,20 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
 
 
 def without_time(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with the name R in place of each R(t) among some names, whose definitions depend on time."""
+    """Return a tree with R in place of R(t) for matrices ``names``: their entries, not their names, depend on time."""
     if node.kind == "call" and node.value in names and node.args == (TIME,):
         return Node("name", node.value, (), node.span)
     return replace(node, args=tuple(without_time(child, names) for child in node.args))
 
 
 def _bare(node: Node) -> Node:
-    """Return the node of the name R for R(t) and its transpose, and any other node unchanged."""
+    """Return the node of the name R for R(t), and for a transpose of R; return any other node unchanged."""
     node = node.args[0] if node.kind == "transpose" else node
     return Node("name", node.value) if node.kind == "call" and node.args == (TIME,) else node
 
 
 def _name_of_array(node: Node) -> str:
-    """Return the name A of A, A^T, A^-1 and of the rate of A; an empty text for any other formula."""
+    """Return the name A if a formula is A, A^T, A^-1 or the rate of A; an empty text for any other formula."""
     inner = node.args[0] if node.kind in ("transpose", "power") or node.value == "diff" else node
     return str(inner.value) if inner.kind == "name" else ""
 
@@ -131,7 +133,7 @@ def _is_array(node: Node, vectors: Collection[str]) -> bool:
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the names, in small letters, that the sides of a claim use as columns: ``r^T r`` and ``(R v)^T``."""
+    """Return the small letters that a claim uses as columns, as in ``r^T r`` and ``(R v)^T``, and does not define."""
     names: dict[str, None] = {}
     for side in sides:
         for _, node in walk(side):
@@ -141,7 +143,7 @@ def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ..
 
 
 def _of_matrix(node: Node) -> Sequence[Node]:
-    """Return the formulas in a node that are matrices by their place: under a transpose, or in ``A B A^T``."""
+    """Return those arguments or factors of a node that must be matrices, such as A and B in ``A B A^T``."""
     if node.kind == "transpose" or (node.kind == "call" and node.value in OF_MATRICES):
         return node.args
     if node.kind == "call" and node.value in ("cross", "dot") and all(side.kind == "product" for side in node.args):
@@ -161,7 +163,7 @@ def _of_matrix(node: Node) -> Sequence[Node]:
 
 
 def _of_form(factors: Sequence[Node]) -> list[Node]:
-    """Return the names in capital letters between a transposed column and a column: A in ``a^T A b``."""
+    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``."""
     first, *between, last = factors
     columns = [first.args[0] if first.kind == "transpose" else number(0), last]
     if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
@@ -170,7 +172,7 @@ def _of_form(factors: Sequence[Node]) -> list[Node]:
 
 
 def _factors(node: Node) -> Iterator[str]:
-    """Yield the names that are factors or terms in a formula, outside of functions."""
+    """Yield the names in a formula that are factors or terms of it; names inside function calls are left out."""
     if node.kind == "name":
         yield str(node.value)
     elif node.kind in ("sum", "product", "neg", "transpose") or (node.kind == "power" and node.args[1].kind != "name"):
@@ -181,7 +183,7 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation with lengths in place of vectors where only a scalar makes sense, and these vectors' names.
+    """Return a relation with lengths in place of vectors where only a scalar makes sense, and the names of the vectors.
 
     Only a scalar makes sense in a product of two columns, ``a b sin(x)``, and in a sum with a scalar.
     """
@@ -197,7 +199,7 @@ def with_lengths(
 
 
 class _Lengths:
-    """The change of vectors into their lengths; ``names`` collects the vectors that were changed."""
+    """A rewriter that replaces vectors by their lengths; ``names`` collects the vectors that it replaced."""
 
     def __init__(self, shapes: Mapping[str, Shape]) -> None:
         self.shapes = shapes
@@ -213,7 +215,7 @@ class _Lengths:
         return node
 
     def scalar(self, node: Node) -> Node:
-        """Return a tree in which the length replaces each vector that is a factor."""
+        """Return a tree in which ``sqrt(dot(v, v))`` replaces each vector v that is a factor."""
         if node.kind == "name" and self.shapes.get(str(node.value)) == COLUMN:
             self.names.append(str(node.value))
             return Node("call", "sqrt", (Node("call", "dot", (node, node), node.span),), node.span)
@@ -223,6 +225,6 @@ class _Lengths:
 
 
 def _has_added_name(node: Node) -> bool:
-    """Return whether a term of a sum is a single name, which may be a vector too: ``a + b``."""
+    """Return whether a term of a sum is a single name, as in ``a + b``; such a name may be a vector too."""
     bare = [term.args[0] if term.kind == "neg" else term for term in node.args]
     return any(term.kind == "name" and not is_tensor(str(term.value)) for term in bare)

@@ -1,17 +1,18 @@
-"""Pauli's matrices, as sigma_x, sigma_y, sigma_z or sigma_1, sigma_2, sigma_3 beside the imaginary unit.
+"""Pauli's matrices, as sigma_x, sigma_y, sigma_z or sigma_1, sigma_2, sigma_3, with commutators and anticommutators.
 
 A complex number a + i b is the real 2 x 2 matrix [[a, -b], [b, a]]. So i and Pauli's matrices become real 4 x 4
 matrices, with which the engine computes exactly.
 """
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from symrot.checker.claim.shapes import shape_of
-from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError
 
-__all__ = ["with_pauli_matrices"]
+__all__ = ["commutator", "with_pauli_matrices"]
 
 Relation = tuple[str, Node, Node]
 Complex = tuple[tuple[complex, complex], tuple[complex, complex]]
@@ -20,41 +21,91 @@ UNIT: Complex = ((1, 0), (0, 1))
 PAULI: dict[str, Complex] = {"x": ((0, 1), (1, 0)), "y": ((0, -1j), (1j, 0)), "z": ((1, 0), (0, -1))}
 NAMES = {f"sigma_{ending}": PAULI[axis] for axis, number_of in zip("xyz", "123", strict=True)
          for ending in (axis, number_of)}  # fmt: skip
-IMAGINARY = "i"
+UNITS = IMAGINARY, UNIT_MATRIX = "i", "I"
+STEM = re.compile("sigma_[a-z123]$")
 SIZE = 4
-PARTS = ("name", "number", "sum", "product", "neg", "power", "inv")
+PARTS = ("name", "number", "sum", "product", "neg", "power", "inv", "list")
 """The kinds of formulas in which letters may be matrices; sines and cosines are scalars."""
+
+CALLS = ("sin", "cos", "trace", "Matrix")
+"""The functions in equations of Pauli's matrices."""
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices, with scalars as multiples of the unit matrix, and the definitions.
+    """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
-    An equation without two of these matrices, or without i, is returned unchanged with no definitions: sigma_x is then
-    a number, such as a stress.
+    These are the matrices if the equation has two of them and i, or a product or power of them and no
+    other name. Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no
+    definitions.
 
     Raises
     ------
     InputError
         For a matrix that is both inside and outside of an exponent.
     """
-    sign, left, right = relation
+    sign, left, right = relation[0], *map(_with_commutators, relation[1:])
     nodes = [node for side in (left, right) for _, node in walk(side)]
     used = {str(node.value) for node in nodes if node.kind == "name"}
     matrices = sorted(used & {*NAMES})
     if (name := _in_exponent(nodes, matrices)) and IMAGINARY in used:
         raise InputError(f"expected {name} outside of exponents (write e^(i a {name}) as cos(a) + i {name} sin(a))")
-    names_another = any(side.kind == "name" and side.value not in (*matrices, IMAGINARY) for side in (left, right))
-    is_plain = all(node.kind in PARTS or (node.kind == "call" and node.value in ("sin", "cos")) for node in nodes)
-    if names_another or not is_plain or IMAGINARY not in used or len(matrices) < 2 or {*known} & {*matrices, IMAGINARY}:
+    names_another = any(side.kind == "name" and side.value not in (*matrices, *UNITS) for side in (left, right))
+    is_plain = all(node.kind in PARTS or (node.kind == "call" and node.value in CALLS) for node in nodes)
+    sigmas = [node for node in nodes if node.kind == "name" and node.value in NAMES]
+    multiplied = any(_is_product_of_matrices(node) for node in nodes) and used <= {*NAMES, UNIT_MATRIX}
+    is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied
+    is_known = bool({*known} & {*matrices, IMAGINARY})
+    if not matrices or names_another or not is_plain or not is_evident or is_known:
         return relation, ()
     define = tuple((name, _real(NAMES[name])) for name in matrices)
-    define = (*define, (IMAGINARY, _real(((1j, 0), (0, 1j)))))
+    define = (*define, (IMAGINARY, _real(((1j, 0), (0, 1j)))), (UNIT_MATRIX, Node("call", "eye", (number(SIZE),))))
     shapes = dict.fromkeys([name for name, _ in define], (SIZE, SIZE))
+    left, right = map(_with_traces, (left, right))
     return (sign, _as_matrix(left, shapes), _as_matrix(right, shapes)), define
 
 
+def _is_product_of_matrices(node: Node) -> bool:
+    """Return whether a formula is a product with two of Pauli's matrices, or a power of one."""
+    factors = [part for part in node.args if part.kind == "name" and part.value in NAMES]
+    return (node.kind == "product" and len(factors) > 1) or (node.kind == "power" and bool(factors))
+
+
+def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
+    """Return the tree of ``[A, B]``, or with the sign ``+`` of the anticommutator ``{A, B}``.
+
+    Return None unless both A and B have one of Pauli's matrices, since brackets hold two components otherwise.
+    """
+    if not all(any(STEM.match(str(node.value)) for _, node in walk(part)) for part in (first, second)):
+        return None
+    backwards = product([second, first])
+    return sum_of([product([first, second]), backwards if sign == "+" else negated(backwards)])
+
+
+def _with_commutators(tree: Node) -> Node:
+    """Return a tree in which typed lists of two matrices are commutators."""
+    args = tuple(map(_with_commutators, tree.args))
+    pair = args[0].args if tree.value == "Matrix" and args[0].kind == "list" else ()
+    bracket = commutator(*pair) if len(pair) == 2 and not any(part.kind == "list" for part in pair) else None
+    return bracket or replace(tree, args=args)
+
+
+def _with_traces(tree: Node) -> Node:
+    """Return a tree with the complex number for each trace, whose real part is half of the trace of the real matrix."""
+    args = tuple(map(_with_traces, tree.args))
+    if tree.kind != "call" or tree.value != "trace":
+        return replace(tree, args=args)
+    half, unit = Node("inv", None, (number(2),)), Node("name", IMAGINARY)
+    turned = Node("call", "trace", (negated(product([unit, *args])),))
+    return sum_of([product([half, Node("call", "trace", args), eye()]), product([half, turned, unit])])
+
+
+def eye() -> Node:
+    """Return the tree of the unit matrix."""
+    return Node("call", "eye", (number(SIZE),))
+
+
 def _real(matrix: Complex) -> Node:
-    """Return the tree of the real matrix of a complex one."""
+    """Return the tree of the real matrix that represents a complex matrix."""
     rows = []
     for row in matrix:
         parts = [(complex(entry).real, complex(entry).imag) for entry in row]
@@ -68,7 +119,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
-    """Return the first name that is in an exponent and also outside of exponents; an empty text without one."""
+    """Return the first matrix name that occurs both inside and outside of exponents; an empty text without one."""
     exponents = [
         node.args[-1] for node in nodes if node.kind == "power" or (node.kind == "call" and node.value == "exp")
     ]
@@ -78,13 +129,18 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 
 
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a side as a matrix; a scalar side s becomes s times the unit matrix."""
+    """Return a side as a matrix; a scalar side s becomes s times the unit matrix, and so does each entry of a list."""
+    if side.kind == "call" and side.value == "Matrix":
+        (rows,) = side.args
+        return replace(
+            side, args=(_list([_list([_as_matrix(entry, shapes) for entry in row.args]) for row in rows.args]),)
+        )
     side = _with_units(side, shapes)
     return side if shape_of(side, shapes) is not None else _times_unit(side)
 
 
 def _with_units(tree: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a tree in which scalar terms of sums of matrices are multiples of the unit matrix."""
+    """Return a tree in which a scalar term s that is added to a matrix becomes s times the unit matrix."""
     args = [_with_units(part, shapes) for part in tree.args]
     if tree.kind == "sum" and any(shape_of(term, shapes) is not None for term in args):
         args = [term if shape_of(term, shapes) is not None else _times_unit(term) for term in args]
@@ -92,4 +148,4 @@ def _with_units(tree: Node, shapes: dict[str, tuple[int, int]]) -> Node:
 
 
 def _times_unit(tree: Node) -> Node:
-    return Node("product", None, (tree, Node("call", "eye", (number(SIZE),))), tree.span)
+    return Node("product", None, (tree, eye()), tree.span)

@@ -1,4 +1,4 @@
-"""Quaternions that a text uses without a definition: ``q ⊗ p``, ``q v q*``, the conjugate, the inverse and the norm.
+"""Quaternions that a text does not define: in ``q ⊗ p``, ``q v q*``, a conjugate, an inverse or a norm.
 
 A quaternion q has the scalar part q_0 and the vector part q_1, q_2, q_3, or a vector that the text names q_v; products
 are Hamilton's. A vector in a product is the quaternion with the scalar part zero.
@@ -34,9 +34,9 @@ ENDINGS = ("_vec", "_v", "v")
 
 @dataclass(frozen=True)
 class Quaternions:
-    """The quaternions of a relation: the relation with their products, the definitions of their names, and notes.
+    """The quaternions of an equation: their definitions, notes, and the equation with quaternion products.
 
-    ``vectors`` are the names of vectors in products with quaternions.
+    ``vectors`` are the names of the vectors that are multiplied by quaternions.
     """
 
     relation: tuple[str, Node, Node]
@@ -48,7 +48,7 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Return the quaternions that a relation uses and that are not ``known`` by a definition.
+    """Return the quaternions in a relation whose names are not ``known``, that is, defined by the claim.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def used_quaternions(
 
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
-    """Return whether the only names of a claim are the quaternions i, j and k, as in ``i² = j² = -1``, ``i j = k``."""
+    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``."""
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
@@ -104,7 +104,7 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return a relation between i, j and k, with these units as quaternions."""
+    """Return a relation between i, j and k in which these are quaternions."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
@@ -123,7 +123,7 @@ def _without_squares(node: Node) -> Node:
 
 
 def quaternion_product(left: Node, right: Node) -> Node:
-    """Return the tree of the product of two quaternions, with the scalar factors of the left side in front.
+    """Return the tree of the product of two quaternions; scalar factors of the left one come first.
 
     Examples
     --------
@@ -137,14 +137,14 @@ def quaternion_product(left: Node, right: Node) -> Node:
 
 
 def _bare(node: Node) -> Node:
-    """Return the node of the name q for q(t), and any other node unchanged."""
+    """Return the node of the name q for q(t); return any other node unchanged."""
     return Node("name", node.value, (), node.span) if node.kind == "call" and node.args == (TIME,) else node
 
 
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
-    """Return the names of the quaternions of a claim, in order."""
+    """Return the names that a claim uses as quaternions, in order of occurrence."""
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
@@ -179,7 +179,7 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return the quaternions that only their places show: q in ``v' = q v q`` and in ``q' = 1/2 omega q``."""
+    """Return the quaternions that only their positions show: q in ``v' = q v q``, and q in ``q' = 1/2 omega q``."""
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
@@ -198,10 +198,10 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return q of ``q v q^-1`` or ``q v q_bar``, or of these reversed, if they rotate a vector; otherwise None.
+    """Return q if a side is ``q v q^-1`` or ``q v q_bar``, or reversed, and rotates a vector; otherwise None.
 
-    The other side shows that: it is ``R v`` or another name with the same letter, such as ``v'``. Letters that are
-    numbers commute, and nobody writes such a product with them unless both sides are equal.
+    The other side tells: it is ``R v``, or another name with the same letter, such as ``v'``. If the letters were
+    numbers, they would commute, and nobody would write such a product.
     """
     if side.kind != "product" or len(side.args) != 3:
         return None
@@ -223,7 +223,7 @@ def _is_inverse(node: Node) -> bool:
 
 
 def _vector_of_pair(node: Node) -> Sequence[Node]:
-    """Return the name of the vector in a quaternion ``(0, v)``, written as a scalar and a vector."""
+    """Return [v] if a node is a quaternion written as a pair of a scalar and a vector, ``(0, v)``; otherwise []."""
     inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
     is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
     return inside.args[1:] if is_pair else ()
@@ -234,7 +234,7 @@ def _is_list(node: Node) -> bool:
 
 
 class _Products:
-    """The reader of products with quaternions."""
+    """A rewriter that finds products with quaternions in a tree and makes them Hamilton products."""
 
     def __init__(self, names: Sequence[str], vectors: set[str]) -> None:
         self.names, self.vectors = names, vectors
@@ -273,7 +273,7 @@ class _Products:
         return self.multiplied(node) if node.kind == "product" else node
 
     def multiplied(self, node: Node) -> Node:
-        """Return a product in which quaternions and the vectors between them are multiplied by Hamilton's rule."""
+        """Return a product in which quaternions, and the vectors between them, are multiplied as Hamilton products."""
         norms = [part for factor in node.args if factor.kind == "product" for part in factor.args if part.kind == "inv"]
         if norms:  # of an inverse, the conjugate over the square of the norm
             parts = [part for factor in node.args for part in (factor.args if factor.kind == "product" else (factor,))]
@@ -297,7 +297,10 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides as quaternions: ``1`` becomes (1, 0, 0, 0), and a vector v becomes (0, v)."""
+    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0).
+
+    If a side is a vector or a name, the vector part of the quaternion on the other side is used.
+    """
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)
@@ -310,7 +313,7 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 
 
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
-    """Return the definition of a quaternion, and the definition of its vector part if the text names this part."""
+    """Return the definition of a quaternion by its components, and of its vector part if the text has a name for it."""
     style = "" if f"{name}0" in used or f"{name}1" in used else "_"
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
@@ -325,7 +328,7 @@ def _column(parts: Sequence[Node]) -> Node:
 
 
 def _with_time(node: Node, used: Collection[str], names: Sequence[str], moving: bool) -> Node:
-    """Return a tree in which the components of moving quaternions are functions of time."""
+    """Return a tree in which the components of quaternions are functions of time, if the quaternions are ``moving``."""
     components = {f"{name}{style}{n}" for name in names for style in ("", "_") for n in range(4)}
     if moving and node.kind == "name" and node.value in components:
         return Node("call", node.value, (TIME,), node.span)

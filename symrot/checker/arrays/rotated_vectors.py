@@ -1,4 +1,4 @@
-"""The matrix of a rotation that a text writes with a quaternion, as R in ``q v q* = R v``.
+"""The matrix of a rotation that a text states by a quaternion, as R in ``q v q* = R v``.
 
 The equation is meant for every vector v, so it gives the matrix R of the linear map on its other side.
 """
@@ -14,7 +14,7 @@ Relation = tuple[str, Node, Node]
 
 
 def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collection[str]) -> tuple[Relation, str]:
-    """Return the equation R = (matrix of the map) for ``R v = f(v)``, and a note; other equations are unchanged.
+    """Turn ``R v = f(v)`` into the equation R = (matrix of f), with a note; return other equations unchanged.
 
     Parameters
     ----------
@@ -44,13 +44,13 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether a formula is linear in a vector: the vector part of one product of quaternions that has it."""
+    """Return whether a formula is linear in a vector: the vector part of a quaternion product with it as one factor."""
     nodes = [node for _, node in walk(image)]
     return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1
 
 
 def _matrix_of(image: Node, vector: Node) -> Node:
-    """Return the matrix of a linear map, whose columns are the images of the unit vectors."""
+    """Return the matrix of a linear map: its columns are the images of the unit vectors."""
     columns = [_with(image, vector, _column(place)) for place in range(3)]
     rows = [[Node("index", None, (column, number(row), number(0))) for column in columns] for row in range(3)]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))

@@ -1,1 +1,1 @@
-"""Claims: their text read into trees, and trees interpreted as formulas of SymPy."""
+"""Claims (equations that a user wants checked): their text is parsed into trees, the trees become SymPy formulas."""

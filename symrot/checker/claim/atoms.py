@@ -1,4 +1,4 @@
-"""The atoms of formulas: the symbols, functions of time and derivatives that a formula consists of."""
+"""The atoms of formulas: the symbols, functions of time and derivatives on which the value of a formula depends."""
 
 from collections.abc import Iterable
 
@@ -11,7 +11,7 @@ __all__ = ["atoms_of"]
 def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
     """Return the atoms of formulas: symbols, functions of time ``f(t)``, and derivatives.
 
-    The ``f(t)`` inside of a derivative ``diff(f(t), t)`` is not an atom by itself.
+    A derivative ``diff(f(t), t)`` is one atom; the ``f(t)`` inside it does not count as a second one.
     """
     atoms: set[Expr] = set()
     stack = list(formulas)

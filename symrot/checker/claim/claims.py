@@ -39,7 +39,7 @@ class Definitions:
     functions : frozenset of str
         Names of functions of time.
     divisors, radicands : tuple
-        Formulas that the texts of the definitions divide by, or take even roots of.
+        Formulas in the definitions' texts that are divisors, and formulas under even roots there.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers.
     """
@@ -83,10 +83,10 @@ class Claim:
         The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
         the claim is measured against.
     has_parts : bool
-        Whether the equation is one of real and imaginary parts, made from the text's equation of complex numbers, or
-        one of components, made from the text's equation in index notation.
+        Whether the text's equation was split: one of complex numbers into its real and imaginary parts, or one in
+        index notation into its components.
     context : Context
-        What is said in words about the names of the claim, and about the body.
+        Statements in words about the names of the claim and about the body, such as ``"rod"``.
     """
 
     id: str = ""
@@ -109,7 +109,7 @@ class Claim:
 
     @property
     def without_context(self) -> "Claim":
-        """The claim without its context, the words about its names and its body."""
+        """The claim without its context: without what the user states in words about names and the body."""
         return replace(self, context=NO_CONTEXT)
 
     @property
@@ -123,7 +123,7 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a SymPy value in which each name of :attr:`defining` is replaced by its formula."""
+        """Return a SymPy value with formulas in place of the names that the hypotheses in :attr:`defining` define."""
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -131,7 +131,7 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim in which formulas replace the names of :attr:`defining`, without the hypotheses for these names."""
+        """The claim with formulas in place of the names of :attr:`defining`, and without the hypotheses for them."""
         definitions = self.defining
         if self.relation is None or not definitions:
             return self
@@ -150,13 +150,14 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return the place of one text of the claim, such as its equation (``key`` "claim"), for error messages."""
+        """Return words for the place of one text of the claim, such as its equation (``key`` "claim"), for messages."""
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
         """Return the claim with another equation.
 
-        ``changes`` are new values of other fields, on which the definitions must not depend.
+        ``changes`` are new values of other fields. They must not change the values of the definitions, which
+        are reused.
         """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
@@ -212,7 +213,7 @@ class Claim:
 
     @cached_property
     def equation(self) -> Equation:
-        """The equation to be decided.
+        """The equation that the decision engine decides, with the hypotheses, divisors and roots of the claim.
 
         Raises
         ------
@@ -242,7 +243,7 @@ class Claim:
 
 
 def _substituted(tree: Node, definitions: Mapping[str, Node]) -> Node:
-    """Return a tree in which names are replaced by their formulas in ``definitions``."""
+    """Return a tree in which the formulas in ``definitions`` replace the names that they define."""
     if tree.kind == "name" and tree.value in definitions:
         return definitions[tree.value]
     return replace(tree, args=tuple(_substituted(child, definitions) for child in tree.args))
@@ -255,7 +256,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of an equation that is a hypothesis, as a list: one difference for each entry of a matrix."""
+    """Return left - right of a hypothesis that is an equation, as a list: one difference for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:

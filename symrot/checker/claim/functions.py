@@ -1,4 +1,4 @@
-"""The built-in functions of claims, such as sin and cross: a table of the functions that build their SymPy values.
+"""The built-in functions of claims, such as sin and cross: a table with the function that evaluates each of them.
 
 Every divisor and every formula under a root is recorded before SymPy can cancel it.
 """
@@ -39,20 +39,20 @@ ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return the function that evaluates a call such as ``tan(x)``.
+    """Return the evaluator of a scalar function: it evaluates a call such as ``tan(x)``.
 
-    If the value has a denominator, ``below`` returns it: cos(x) for tan(x).
+    If the value has a denominator, ``below`` returns it, as cos(x) for tan(x); it is recorded as a divisor.
     """
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
-            raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
+            raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms when expanded")
         if below is not None:
             scope.divide_by(below(value), node)
         made = function(value)
         if value.is_number and not made.is_Rational and enclosure(made) is None:
-            raise scope.fail(node, "a number whose digits can be computed instead of deeply nested functions")
+            raise scope.fail(node, "a number that can be computed to many digits instead of deeply nested functions")
         return made
 
     return call
@@ -79,7 +79,7 @@ def _atan2(scope: Scope, node: Node) -> Expr:
 
 
 def _arc(function: Callable[[Expr], Expr]) -> Any:
-    """Return the function that evaluates a call of asin or acos, whose argument must lie between -1 and 1."""
+    """Return the evaluator of asin or acos, which refuses a number outside of -1 to 1 as the argument."""
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
@@ -101,7 +101,7 @@ def _log(scope: Scope, node: Node) -> Expr:
 
 
 def _part(scope: Scope, node: Node) -> Expr:
-    """Return the real part of a formula without the imaginary unit, or zero for its imaginary part."""
+    """Evaluate ``Re(x)`` or ``Im(x)`` of a formula without the imaginary unit: the formula itself, or zero."""
     value = scope.scalar(node.args[0], f"as the argument of {node.value}")
     return value if node.value == "real_part" else sympy.S.Zero
 
@@ -157,12 +157,12 @@ def _det(scope: Scope, node: Node) -> Expr:
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products instead of {products}")
+        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products, not {products},")
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
 
 
 def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
-    """Return a determinant by expansion into smaller determinants, as a sum of products that are not multiplied out."""
+    """Return a determinant by cofactor expansion. The products in the sum are not multiplied out."""
     if matrix.rows == 1:
         return matrix[0, 0]
     rest = matrix[1:, :]
@@ -191,7 +191,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
         raise scope.fail(
-            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products instead of {products}"
+            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products, not {products},"
         )
     return matrix.adjugate(method="berkowitz")
 
@@ -221,7 +221,7 @@ def _matrix(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
-    """Return a matrix from rows of scalars, or of matrices that fit together; a zero may stand for a block of zeros."""
+    """Return a matrix from rows of scalars or of blocks (smaller matrices). A zero may stand for a block of zeros."""
     rows = rows if isinstance(rows, tuple) else ()
     rows = tuple(row if isinstance(row, tuple) else (row,) for row in rows)
     cells = [cell for row in rows for cell in row]
@@ -241,7 +241,10 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return a cell as a matrix of a given size: a zero may have any size, any other cell only its own."""
+    """Return one cell as a block of the given size.
+
+    A zero fits any size; any other cell must have the size, else None.
+    """
     if cell == 0 and not is_matrix(cell):
         return ImmutableMatrix.zeros(height, width)
     matrix = cell if is_matrix(cell) else ImmutableMatrix([[cell]])
@@ -259,7 +262,7 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
-    """Return the four components of a quaternion, scalar first; a vector gets the scalar component zero."""
+    """Return the four components of a quaternion, scalar first; a vector becomes a quaternion with scalar part zero."""
     value = scope.evaluate(node)
     if isinstance(value, tuple):
         value = _of_blocks(scope, node, value)
@@ -315,7 +318,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
         variable = scope.scalar(place.args[0], "to integrate over")
         lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
-            raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
+            raise scope.fail(place, "a symbol to integrate over, which does not occur in its limits,")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
     total = scope.evaluate(integrand)
@@ -323,7 +326,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
     needs = [d.value for d in scope.divisors[divisors_before:] if not d.value.is_nonzero]
     needs += [radicand for radicand in scope.radicands[radicands_before:] if not radicand.is_nonnegative]
     if any(need.has(variable) for need in needs for variable, _, _ in limits):
-        raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
+        raise scope.fail(integrand, "an integrand without the variable in divisors and under roots")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         entries = []
         for entry in total if is_matrix(total) else [total]:
@@ -342,7 +345,11 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral over a body of unknown shape: the integral of each product of coordinates is a new symbol."""
+    """Return an integral over a body of unknown shape.
+
+    Each product of coordinates has an unknown integral, for which a new symbol stands: one for x^2, another for
+    x*y.
+    """
     value = scope.evaluate(node.args[0])
     scope.shape(value, node.args[0])
     if is_matrix(value):

@@ -1,4 +1,4 @@
-"""Exact definite integrals, by parts, of polynomials times sines and cosines of angles linear in the variable."""
+"""Exact definite integrals of polynomials times sines and cosines whose angles are linear in the variable."""
 
 from functools import lru_cache
 
@@ -16,7 +16,7 @@ MOST_TERMS = 2000
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
     """Return the integral over an interval, and the coefficients of the variable that its value divides by.
 
-    The integral of cos(k x), for example, divides by k.
+    The integral of cos(k x), for example, divides by k, so that k must not be zero.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
-    """Return the expanded integrand, in which sines and cosines of the variable have become exponentials."""
+    """Return the expanded integrand with complex exponentials in place of the sines and cosines of the variable."""
     angles = [node for node in integrand.atoms(sin, cos) if node.has(variable)]
     exponentials = {}
     for node in angles:
@@ -53,7 +53,7 @@ def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
         raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
     expanded = plain.expand()
     if len(Add.make_args(expanded)) > MOST_TERMS:
-        raise InputError(f"expected an integrand of at most {MOST_TERMS} terms, got more")
+        raise InputError(f"expected an integrand of at most {MOST_TERMS} terms when it is multiplied out, got more")
     return expanded
 
 
@@ -86,7 +86,7 @@ def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
 
 
 def _value(primitive: Expr, variable: Symbol, limit: Expr) -> Expr:
-    """Return the real value of an antiderivative at a limit."""
+    """Return the real value of an antiderivative at one limit of the integral."""
     value = primitive.subs(variable, limit)
     waves = {node: _wave(node.args[0]) for node in value.atoms(exp)}
     terms = Add.make_args(value.xreplace(waves).expand())

@@ -1,4 +1,4 @@
-"""The interpreter of claims: it turns syntax trees into SymPy, by a table with one function for each kind of node."""
+"""The interpreter of claims turns syntax trees into SymPy formulas, by a table with one function per kind of node."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
+from symrot.checker.typed.defined_functions import DISPUTED_NAMES, instead
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
@@ -26,8 +27,8 @@ time = Symbol("t", real=True)
 
 CONSTANTS: dict[str, Expr] = {"pi": sympy.pi}
 UNKNOWN_HERE = (
-    "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
-    "zoo", "infinity", "Infinity",
+    "ln", "arcsin", "arccos", "arctan", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo", "zoo",
+    "infinity", "Infinity", *DISPUTED_NAMES,
 )  # fmt: skip
 """Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
 
@@ -37,7 +38,7 @@ INSTEAD = {"I": "I_1", "E": "E_k"}
 
 @dataclass
 class Interpreter(Scope):
-    """Interpreter of one claim: it knows the names of the claim, and turns syntax trees into SymPy."""
+    """The interpreter of one claim: it knows the claim's names and turns syntax trees into SymPy formulas."""
 
     def read(self, node: Node, source: str = "", where: str = "") -> Any:
         """Return the value of a tree: Expr or ImmutableMatrix.
@@ -45,7 +46,7 @@ class Interpreter(Scope):
         Raises
         ------
         InputError
-            For a piece without a value, with its position in ``source``.
+            If a part of the formula has no value; the message gives its position in ``source``.
         """
         self.source, self.where = source or self.source, where or self.where
         value = self.evaluate(node)
@@ -58,7 +59,7 @@ class Interpreter(Scope):
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:
             if is_unordered(reason):
-                raise self.fail(node, "numbers that can be ordered by their digits") from None
+                raise self.fail(node, "numbers of which it can be told which is larger") from None
             raise
 
 
@@ -81,10 +82,12 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node, f"brackets after the function {name}")
     if not interpreter.implied:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
+    if name in DISPUTED_NAMES:
+        raise interpreter.fail(node, instead(DISPUTED_NAMES[name]))
     if name in UNKNOWN_HERE:
         hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
         raise interpreter.fail(
-            node, f"a symbol of another name{hint} since {name!r} means something else to most readers,"
+            node, f"a symbol with another name{hint} since {name!r} means something else to most readers,"
         )
     symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
     return symbol
@@ -169,11 +172,11 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
 
 
 def _power_of_positive(interpreter: Interpreter, node: Node, base: Expr, exponent: Expr) -> Expr:
-    """Return exp(exponent*log(base)), the power of a positive base, for an exponent that is not a number."""
+    """Return ``exp(exponent*log(base))``: the power of a positive base with an exponent that is not a number."""
     interpreter.shape(base, node.args[0])
     interpreter.within_nesting(exponent, node.args[1])
     if base.is_nonpositive:
-        raise interpreter.fail(node.args[0], "a positive number below an exponent that is no number")
+        raise interpreter.fail(node.args[0], "a positive number as the base of a power whose exponent is not a number")
     interpreter.within_nesting(base, node.args[0])
     interpreter.divide_by(base, node.args[0])
     interpreter.take_root(base, node.args[0])
@@ -221,7 +224,9 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             if close
             else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
-        expected = f"a function that is built in or declared as one of t instead of {name!r} ({known})"
+        expected = f"a built-in function, or one declared as a function of t, instead of {name!r} ({known})"
+        if name in DISPUTED_NAMES:
+            expected = instead(DISPUTED_NAMES[name])
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)
     return _function_of_time(interpreter, node)

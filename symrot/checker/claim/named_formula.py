@@ -1,6 +1,6 @@
-"""Claims such as ``k^2 = I/m``, which relate a quantity without a definition to the formula for it.
+"""Claims such as ``k^2 = I/m`` that give a formula for a quantity which nothing in the claim defines.
 
-No such claim is an identity: whether it holds depends on what its letters mean.
+Such a claim is no identity: whether it holds depends on what its letters mean.
 """
 
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -18,23 +18,25 @@ from symrot.exact import normal_form
 from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["NamedFormula", "Solve", "named_formula", "open_formula", "related_formula"]
+__all__ = [
+    "NamedFormula", "Solve", "is_name_or_rate", "named_formula", "open_formula", "related_formula", "solution",
+]  # fmt: skip
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
 """Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
 
-INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log"}
+INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
 """Function of a quantity -> the function that solves for the quantity."""
 
 
 class NamedFormula(NamedTuple):
-    """A quantity without a definition, and the formula that a claim gives for it.
+    """A quantity that the claim does not define, and the formula that the claim gives for it.
 
     ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
-    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula for ``side`` into a formula for
-    the quantity: I/m into sqrt(I/m) for k^2 = I/m. It is None if the claim is not solved for one name; then ``name`` is
-    the text of ``side``.
+    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula for ``side`` into a formula
+    for the quantity: I/m into sqrt(I/m) for k^2 = I/m. If the claim is not solved for one name, ``solve`` is None
+    and ``name`` is the text of ``side``.
     """
 
     name: str
@@ -65,7 +67,7 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return the two sides of a claim about the derivative of a name that nothing defines; None for other claims.
+    """Return both sides of a claim that differentiates a name which nothing defines; None for other claims.
 
     ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
     """
@@ -84,9 +86,10 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether a rate, or a product with one, is zero, or the rate of a product is given by another letter.
+    """Return whether an equation sets a rate to zero, or gives the rate of a product by a letter that is not in it.
 
-    Examples are ``(I w)' = 0``, ``C w_3' = 0`` and ``(I w^2/2)' = I w alpha``.
+    Examples are ``(I w)' = 0``, ``C w_3' = 0`` and ``(I w^2/2)' = I w alpha``. They hold by the laws of motion, not
+    as identities.
     """
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
@@ -105,7 +108,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a derivative is one by time, of a formula that contains a function of time."""
+    """Return whether a tree is a derivative with respect to time of a formula that contains a function of time."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
@@ -113,7 +116,10 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return a quantity and the formula for it, from a claim that may hold because of what its letters mean."""
+    """Return a quantity and the formula for it, if a claim is no identity but may hold by the meaning of its letters.
+
+    Return None for any other claim.
+    """
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
@@ -147,8 +153,8 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         return None
     if apart:
         for side, formula in ((left, right), (right, left)):
-            if (solution := _solution(side)) is not None:
-                (name, is_rate), solve = solution
+            if (inverted := solution(side)) is not None:
+                (name, is_rate), solve = inverted
                 return NamedFormula(name, side, formula, is_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
@@ -161,7 +167,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _says_something(claim: Claim, left: Node, right: Node) -> bool:
-    """Return whether the values of both sides depend on letters, and are not just two letters.
+    """Return whether the values of both sides depend on letters, and at least one side is more than a single letter.
 
     ``z/z`` and ``sin(a)^2 + cos(a)^2`` depend on no letter.
     """
@@ -174,7 +180,10 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Return the vector that is a single term of an equation and occurs nowhere else, and the formula for it."""
+    """Solve an equation for a vector that is one of its terms and occurs only once.
+
+    Return the vector and its formula.
+    """
     terms = [*_terms(left), *map(negated, _terms(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
@@ -187,7 +196,7 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether an equation says that several letters make a number: q0^2 + q1^2 + q2^2 + q3^2 = 1, T/U = 2."""
+    """Return whether an equation restricts letters by a number, as q0^2 + q1^2 + q2^2 + q3^2 = 1 and T/U = 2 do."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
     if polynomial.kind == "product" and not _quantities(constant) and constant != number(0):
         factors = [factor.args[0] if factor.kind == "inv" else factor for factor in polynomial.args]
@@ -201,7 +210,10 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
-    """Return the quantities of both sides of ``F == k*x`` if a line before it defines F, as ``F = m*a`` does."""
+    """Return the quantities on each side of an equation whose left side is defined on an earlier line.
+
+    In ``F == k*x`` after ``F = m*a``, these are m and a on the left, and k and x on the right.
+    """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
         return [set(), set()]
@@ -219,22 +231,34 @@ def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tu
 def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
     """Return whether each side has a quantity that the other side lacks, as ``m*a == m*g - T`` has.
 
-    Such an equation determines its quantities; no one writes it as an identity.
+    Such an equation determines its quantities; it is not meant as an identity.
     """
     left, right = letters
     return bool(left - right) and bool(right - left)
 
 
 def _depends_on_own_letters(claim: Claim) -> bool:
-    """Return whether the value of each side depends on an atom on which the other does not, after cancellation."""
-    left, right = (atoms_of(flatten(side)[0]) for side in (claim.equation.left, claim.equation.right))
+    """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not.
+
+    A claim whose sides become equal if one letter replaces another, as ``x*cos(a) == x*cos(b)``, has the wrong letter.
+    """
+    try:
+        sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
+        left, right = map(atoms_of, sides)
+        own = [*(left - right), *(right - left)]
+        if len(own) == 2 and all(atom.is_Symbol for atom in own) and left - right and right - left:
+            other = dict([own])
+            changed = [form.xreplace(other) for form in sides[0]]
+            return any(normal_form(a - b) != 0 for a, b in zip(changed, sides[1], strict=True))
+    except TooLarge:
+        left, right = (atoms_of(flatten(side)[0]) for side in (claim.equation.left, claim.equation.right))
     return bool(left - right) and bool(right - left)
 
 
 def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
-    """Return whether an equation says that a product of two vectors, or a length, is a number: ``a . b = 0``.
+    """Return whether an equation restricts vectors: it sets a product or a length to a number, as ``a . b = 0`` does.
 
-    If ``unit``, vectors have length one: then an equation about a length is no condition.
+    If ``unit``, vectors have length one: then an equation about a length restricts nothing.
     """
     for side, other in ((left, right), (right, left)):
         product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
@@ -245,7 +269,7 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation says what kind of matrix its only name is: ``R.T*R == eye(3)`` or ``det(R) == 1``."""
+    """Return whether an equation restricts the only matrix in it: ``R.T*R == eye(3)`` or ``det(R) == 1``."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
@@ -255,7 +279,7 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether the only scalar in a relation of vectors is one angle: ``a . b = |a| |b| cos(theta)``."""
+    """Return whether a relation of vectors defines an angle, its only scalar: ``a . b = |a| |b| cos(theta)``."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
@@ -266,7 +290,7 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether a side differentiates a name without a definition by a quantity other than time."""
+    """Return whether a side contains the derivative, by a quantity other than time, of a name without a definition."""
     for side in (left, right):
         for _, node in walk(side):
             if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
@@ -277,7 +301,7 @@ def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> boo
 
 
 def _is_list_of_names(tree: Node) -> bool:
-    """Return whether a tree is a vector or matrix of names and rates alone."""
+    """Return whether a tree is a vector or matrix whose entries are names or rates, such as ``[a, b, c']``."""
     is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
     if tree.kind == "list" and len(tree.args) == 2 and tree.args[0] == number(0):
         return _is_name(tree.args[1])  # the quaternion (0, v)
@@ -285,16 +309,16 @@ def _is_list_of_names(tree: Node) -> bool:
 
 
 def _factors(tree: Node) -> list[Node]:
-    """Return the factors of all terms of a sum, without exponents and signs."""
+    """Return the factors of a product, or of every term of a sum, without their exponents and signs."""
     if tree.kind in ("sum", "product", "neg"):
         return [factor for part in tree.args for factor in _factors(part)]
     return _factors(tree.args[0]) if tree.kind == "power" else [tree]
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that need no formula: pi, the time t, and the names that the claim defines.
+    """Return the names that are already defined: pi, the time t, and the names that the claim defines.
 
-    A vector whose definition only names its components is not among them.
+    A vector whose definition only lists its components is not one of them.
     """
     return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
@@ -309,8 +333,13 @@ def _is_rate(tree: Node) -> bool:
     return tree.kind == "call" and tree.value == "diff" and _is_name(tree.args[0]) and {*times} == {"t"}
 
 
+def is_name_or_rate(tree: Node) -> bool:
+    """Return whether a tree is a name, a function of time such as ``theta(t)``, or a time derivative of one."""
+    return _is_name(tree) or _is_rate(tree)
+
+
 def _quantities(tree: Node) -> set[tuple[str, bool]]:
-    """Return the names in a tree, each with whether its time derivative is meant; x and dx/dt are two quantities."""
+    """Return the names in a tree as pairs (name, whether its rate is meant); x and dx/dt are two quantities."""
     if _is_rate(tree):
         return {(str(tree.args[0].value), True)}
     if _is_name(tree):
@@ -318,8 +347,8 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
     return {quantity for part in tree.args for quantity in _quantities(part)}
 
 
-def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the quantity of which a side is a function, such as k in 2*k^2, and how to solve for it; or None."""
+def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
+    """Return the only quantity of a side, such as k in 2*k^2, and a function that solves for it; None without one."""
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":
@@ -336,6 +365,9 @@ def _solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
             side = own[0]
         elif side.kind == "power" and side.args[1].kind == "number" and side.args[1].value:
             steps.append(partial(_to_power, 1 / side.args[1].value))
+            side = side.args[0]
+        elif side.kind == "inv":
+            steps.append(partial(_to_power, Fraction(-1)))
             side = side.args[0]
         elif side.kind == "call" and side.value == "sqrt":
             steps.append(partial(_to_power, Fraction(2)))
@@ -362,12 +394,12 @@ def _called(function: str, tree: Node) -> Node:
 
 
 def _after(steps: Sequence[Solve], tree: Node) -> Node:
-    """Return a tree changed by each function in ``steps``, one after the other."""
+    """Return the tree after all ``steps``, functions of a tree that are applied in order."""
     return reduce(lambda made, step: step(made), steps, tree)
 
 
 def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without the letters that both have as factors, as m in ``m*v**2/2 == m*g*h``."""
+    """Return both sides without the letters that are factors of both, as m in ``m*v**2/2 == m*g*h``."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
         if factor in factors[1] and _is_name(factor) and _quantities(factor):
@@ -377,10 +409,9 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Return the highest derivative in a linear differential equation, and the formula for it; otherwise None.
+    """Solve a linear differential equation for its highest derivative; None if the claim is no such equation.
 
-    An equation with the derivative of a product, sum or function may be a rule of differentiation; for it, return None
-    too.
+    An equation with the derivative of a product, sum or function may be a rule of differentiation: None for it too.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if node.kind == "call" and node.value == "diff"}

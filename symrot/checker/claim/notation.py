@@ -1,4 +1,4 @@
-"""Formulas written in the notation that the user typed: SymPy's text, or plain text with ``^``, ``=`` and primes."""
+"""Writing formulas in the notation that the user typed: SymPy syntax, or plain text with ``^``, ``=`` and primes."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -19,7 +19,7 @@ SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
 
 
 class Notation(Protocol):
-    """The notation of the user's text, in which answers are written."""
+    """The notation of the user's text, such as LaTeX or SymPy syntax: answers are written in it too."""
 
     def formula(self, node: Node) -> str:
         """Return the text of a formula."""
@@ -28,20 +28,20 @@ class Notation(Protocol):
         """Return the text of an equation or inequality."""
 
     def rewritten(self, source: str) -> str:
-        """Return the text of an equation that is given as SymPy's text; words after it stay unchanged."""
+        """Return an equation in SymPy syntax as text in this notation. Words after the equation stay unchanged."""
 
     def condition(self, source: str) -> str:
-        """Return the text of a condition, such as ``0 <= x <= pi``, that is given as SymPy's text."""
+        """Return a condition in SymPy syntax, such as ``0 <= x <= pi``, as text in this notation."""
 
 
 @dataclass(frozen=True)
 class TypedNotation:
-    """The way in which a text is typed: SymPy's text, or plain text.
+    """The notation of a text that was typed without LaTeX: SymPy syntax, or plain text.
 
     Attributes
     ----------
     plain : bool
-        Whether powers are ``^`` and equations ``=``; if not, formulas are SymPy's text.
+        True for plain text, with ``^`` for powers and ``=`` in equations; False for SymPy syntax.
     spelling : mapping
         Name in the tree -> name as it was typed.
     timed : frozenset of str
@@ -60,7 +60,7 @@ class TypedNotation:
         return plain.replace("real_part(", "Re(").replace("imaginary_part(", "Im(")
 
     def _spelled(self, node: Node, parent: str = "") -> Node:
-        """Return a tree whose names are spelled as they were typed, with primes for rates and ``[..]`` for matrices."""
+        """Return a tree with names as the user typed them, primes for rates, and ``[..]`` for matrices."""
         if node.kind == "call" and node.value == "diff":
             name = str(node.args[0].value)
             if name not in self.timed or not _is_rate(node):
@@ -83,7 +83,7 @@ class TypedNotation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return the tree of a formula to be differentiated, with functions of time in full: ``f(t)``, not ``f``."""
+        """Return a formula inside a derivative, with functions of time as ``f(t)``, since ``f`` would be a constant."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 
@@ -93,9 +93,9 @@ class TypedNotation:
         return f"{self.formula(left)} {'=' if self.plain and sign == '==' else sign} {self.formula(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return a relation, given as SymPy's text, in this notation.
+        """Return an equation or inequality in SymPy syntax as text in this notation.
 
-        Words after the relation (``with w == ..``) stay unchanged.
+        Words after it (``with w == ..``) stay unchanged.
         """
         if not self.plain:
             return source
@@ -106,14 +106,15 @@ class TypedNotation:
             return source
 
     def condition(self, source: str) -> str:
-        """Return a condition, given as SymPy's text, in this notation."""
+        """Return a condition in SymPy syntax as text in this notation."""
         return with_formulas(source, self.formula, {"==": "="}) if self.plain else source
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition in SymPy's text, such as ``0 <= x <= pi and y > 0``, with its formulas and signs rewritten.
+    """Rewrite a condition in SymPy syntax, such as ``0 <= x <= pi and y > 0``, and return its text.
 
-    A condition that cannot be read stays unchanged.
+    ``formula`` writes each formula. ``signs`` maps a sign in SymPy syntax to the sign to write, as ``==`` to ``=``.
+    An unreadable condition stays unchanged.
     """
     pieces = SIGN.split(source)
     try:
@@ -125,7 +126,7 @@ def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[st
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number as text: as a decimal number if that is exact and short, otherwise as a fraction in brackets."""
+    """Return a number as text: a decimal number if that is exact and short, otherwise a fraction in brackets."""
     if value.denominator == 1:
         return str(value)
     written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")
@@ -142,7 +143,10 @@ END = Node("name", "")
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power like x^3. With a slash after it, x^3/2 might be taken for x^(3/2)."""
+    """Return whether a tree is a power with a number as exponent, such as x^3.
+
+    With a slash after it, as in x^3/2, it might be read as x^(3/2).
+    """
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 

@@ -1,4 +1,4 @@
-"""The letters I, E, e and i, each of which means a quantity in some books and a number in others."""
+"""The letters I, E, e and i: in some books each is a quantity (inertia, energy), in others a number (i, 2.718..)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,8 +25,8 @@ USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     """Return which of the letters I and E mean a quantity: I an inertia, E an energy.
 
-    A letter is a quantity if another usual name of mechanics occurs. It is a number where only a number makes sense:
-    inside of exp, log or a trigonometric function, or in a product with nothing but sines.
+    A letter is a quantity if another usual name of mechanics occurs. It is a number where only a number makes
+    sense: inside exp, log or a trigonometric function, or in a product with nothing but sines.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     names = {
@@ -50,7 +50,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether a product holds only the letter, numbers and sines: in ``I*sin(theta)``, I is imaginary."""
+    """Return whether a product has only the letter, numbers and sines, as ``I*sin(theta)``: then I is imaginary."""
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
@@ -62,7 +62,7 @@ def _is_imaginary(product: Node, letter: str) -> bool:
 def has_natural_base(trees: Sequence[Node]) -> bool:
     """Return whether the letter e is the base of the exponential function.
 
-    It is if e has an exponent that is not a number, or if e is in the argument of a logarithm.
+    It is if an exponent of e is not a number, or if e occurs in the argument of a logarithm.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")
@@ -77,7 +77,7 @@ def _is_exponential(node: Node, base: str) -> bool:
 
 
 def with_natural_base(node: Node) -> Node:
-    """Return a tree in which the letter e is the base of the exponential function: exp(x) replaces e**x."""
+    """Return a tree with exp(x) in place of e**x."""
     if node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e"):
         return Node("call", "exp", (with_natural_base(node.args[1]),), node.span)
     if (node.kind, node.value) == ("name", "e"):

@@ -1,9 +1,9 @@
-"""The reader of claims, from text to tree, without Python's evaluator or SymPy.
+"""The reader of claims: it parses text into trees, without Python's ``eval`` and without SymPy.
 
-It reads SymPy's text, ``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and ``M[0, 1]``;
+It reads SymPy syntax (``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and ``M[0, 1]``),
 and formulas as people type them: ``2x``, ``sin^2 x``, ``m g l``, ``x'``, ``ω₁``, ``½``, chains ``a = b = c``, several
-lines. Any other text is refused with its position; nothing is dropped. SymPy's text has one reading; any other text may
-have several, and the usual one comes first.
+lines. Any other text is refused with its position; nothing is dropped. SymPy syntax has one reading (interpretation);
+any other text may have several, of which the usual one comes first.
 """
 
 import re
@@ -15,7 +15,15 @@ from typing import Any
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number
 from symrot.checker.typed.copied_text import without_surroundings
-from symrot.checker.typed.cursor import DEEPEST_NESTING, TIME, Doubt, Vocabulary, is_cross_letter, is_usual_vector
+from symrot.checker.typed.cursor import (
+    DEEPEST_NESTING,
+    TIME,
+    Doubt,
+    Vocabulary,
+    is_cross_letter,
+    is_mass_before_vector,
+    is_usual_vector,
+)
 from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token, tokens_of, without_dots
 from symrot.checker.typed.words import (
@@ -61,7 +69,7 @@ class Declared:
 
 @dataclass(frozen=True)
 class Chain:
-    """One line of a text: its sides and the signs between them.
+    """One line of a text: formulas (sides) with relation signs between them.
 
     There is one sign, or several equals signs (``a = b = c``).
 
@@ -70,7 +78,7 @@ class Chain:
     signs : tuple of str
     sides : tuple of Node
     both_signs : bool
-        Whether this line is one of the two that a line with ± stands for.
+        Whether the typed line has a sign ±; it then stands for two lines, and this is one of them.
     """
 
     signs: tuple[str, ...]
@@ -79,7 +87,7 @@ class Chain:
 
     @property
     def links(self) -> tuple[Relation, ...]:
-        """The relations between neighbouring sides; in ``I_x = I_y = F`` each name is compared with the formula F."""
+        """The relations between neighbouring sides. In ``I_x = I_y = F`` each name is related to the formula F."""
         formulas = [side for side in self.sides if side.kind != "name"]
         rights = list(self.sides[1:])
         if formulas and set(self.signs) == {"=="}:
@@ -97,11 +105,11 @@ class Reading:
     ----------
     lines : tuple of Chain
     plain : bool
-        Whether the text has anything that SymPy's text does not have.
+        Whether the text uses notation that is not SymPy syntax.
     doubts : tuple of Doubt
-        The places that have another reading.
+        The ambiguous places of the text.
     notes : tuple of str
-        Sentences about how the text is read.
+            Sentences about how the text is read.
     spelling : dict
         Name in the trees -> name as it was typed, where they differ.
     timed : frozenset of str
@@ -109,7 +117,7 @@ class Reading:
     vectors : mapping of str to bool
         Names that are vectors because of the way in which they are used; True for one with a hat.
     flipped : tuple of str
-        The excerpts of the text that are read in their less usual way.
+        The excerpts of the text to which this reading gives their less usual meaning.
     """
 
     lines: tuple[Chain, ...]
@@ -128,7 +136,7 @@ class Reading:
 
 
 class _Text:
-    """The tokens of a text, with the functions that interpret them."""
+    """The tokens of one text, with the methods that interpret them."""
 
     def __init__(self, source: str, where: str, declared: Declared, numbers: bool = True) -> None:
         self.source, self.where, self.declared = source, where, declared
@@ -147,21 +155,21 @@ class _Text:
             tokens = [*clauses, *([end] if clauses else []), *tokens[: len(tokens) - 1 - len(clauses)], tokens[-1]]
         self.tokens, self.totals = _without_totals(tokens)
         if len(self.tokens) > MOST_PIECES:
-            raise InputError(f"{prefix}expected a formula of at most {MOST_PIECES} pieces, got {len(self.tokens)}")
+            raise InputError(f"{prefix}expected at most {MOST_PIECES} numbers, names and signs, got {len(self.tokens)}")
 
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
     ) -> Reading:
-        """Return the reading of the text in which the ambiguous places ``flips`` have their less usual meaning.
+        """Return one reading of the text, in which the ambiguous places ``flips`` have their less usual meaning.
 
         Parameters
         ----------
         whole : bool
-            Whether words that may be several names are names.
+                    True to keep a word such as ``mgl`` as one name; False to split it into names where that is usual.
         as_sympy : bool
             Whether ``dx/dt`` is a quotient of two names.
         flips : collection of (str, int)
-            Keys of doubts.
+                    The keys of ambiguous places (:class:`Doubt`) that get their less usual meaning.
         one_side : bool
             Whether the text is a formula without a relation.
         """
@@ -230,7 +238,7 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words that are several names (``mgl`` is m g l), sentences about them, and the doubtful words."""
+        """Return the words to split into names (``mgl`` into m, g, l), notes about them, and the ambiguous words."""
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
@@ -264,8 +272,10 @@ class _Text:
 
     @property
     def differentials(self) -> set[str]:
-        """The words dy and dx of ``dy/dx`` and of ``d/dx (..)``."""
-        words = set()
+        """The names that start with d and occur as in ``dy/dx``, ``d/dx (..)``, ``∂y`` or ``∫ y dx``: dy and dx."""
+        words = {token.text for token in self.tokens if self.source[token.start : token.start + 1] == "∂"}
+        if any(token.text == "∫" for token in self.tokens):
+            words |= {token.text for token in self.tokens if re.fullmatch("d[A-Za-z]", token.text)}
         for n, slash in enumerate(self.tokens):
             above, below = self.tokens[max(n - 1, 0)], self.tokens[min(n + 1, len(self.tokens) - 1)]
             is_above = above.text == "d" or re.fullmatch(r"d[A-Za-z]", above.text) or above.kind in ("power", "number")
@@ -275,16 +285,16 @@ class _Text:
         return words
 
     def is_spaced_after(self, word: str) -> bool:
-        """Return whether a blank and another name follow every occurrence of a word in the text."""
+        """Return whether every occurrence of a word in the text is followed by a blank and another name."""
         pairs = [after for token, after in pairwise(self.tokens) if token.kind == "name" and token.text == word]
         return all(after.kind == "name" and after.spaced for after in pairs)
 
     def without_shorthand(
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
     ) -> list[Token]:
-        """Return tokens in which cos(θ) and sin(θ) replace the shorthands cθ and sθ.
+        """Return tokens in which cos(θ) and sin(θ) replace the short forms cθ and sθ.
 
-        They are shorthands only if the text has both, and has neither c nor s by itself.
+        They are short forms only if the text has both, and if neither c nor s occurs alone.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
@@ -307,7 +317,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` is one name if it is the left side of an equation.
+        """Return tokens in which ``ωp``, an ω with the index p, is one name where it is the left side of an equation.
 
         Anywhere else ``ωp`` is the product of ω and p.
         """
@@ -328,7 +338,7 @@ class _Text:
         return tokens
 
     def has_first_and_last(self, letter: str) -> bool:
-        """Return whether a text has ``ωi`` and ``ωf``, the first and last value, and no i or f by itself."""
+        """Return whether the text has ``ωi`` and ``ωf``, an initial and a final value, and neither i nor f alone."""
         pairs = list(pairwise(self.tokens))
         after = {second.text for first, second in pairs if first.text == letter and second.tight}
         alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
@@ -366,7 +376,7 @@ class _Text:
         return any(piece.text in SIGNS for piece in after[:end])
 
     def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether a token after the end of a line starts another claim."""
+        """Return whether a token after a line break starts another equation, and does not continue the line before."""
         if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", "⊗", *SIGNS) or token.kind == "end":
             return False
         if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", "⊗", ")", "]", ","):
@@ -381,14 +391,17 @@ class _Text:
 
     @staticmethod
     def ended(line: list[Token]) -> list[Token]:
-        """Return the tokens of a line, with a token that marks its end instead of a comma or full stop there."""
+        """Return the tokens of a line with an end token in place of a comma or full stop at its end."""
         while len(line) > 1 and line[-1].kind == "mark" and line[-1].text in (",", "."):
             line = line[:-1]
         return [*line, Token("end", "", line[-1].end, line[-1].end)]
 
 
 def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
-    """Yield the tokens of a line; of a line with ± or ∓, first with the upper signs, then with the lower signs."""
+    """Yield the tokens of a line.
+
+    For a line with ± or ∓, yield them with the upper signs and then with the lower signs.
+    """
     if not any(sign in token.text for token in line for sign in "±∓"):
         yield line
         return
@@ -403,26 +416,29 @@ def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
 
 
 def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
-    """Yield the names that are not followed by a bracket; a letter x used as the sign of a cross product is no name."""
-    for before, token, after in zip((None, *tokens), tokens, tokens[1:], strict=False):
-        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, vectors):
+    """Yield the names that no bracket follows. A letter x that is the sign of a cross product is no name."""
+    padded = [*tokens, tokens[-1]]
+    for before, token, after, last in zip((None, *tokens), tokens, tokens[1:], padded[2:], strict=False):
+        own = last if is_mass_before_vector(after, last) else after
+        if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, own, vectors):
             yield token.text
 
 
-def _is_cross(before: Token | None, token: Token, after: Token, vectors: Collection[str]) -> bool:
-    """Return whether a letter x is the sign of a cross product: it has blanks and names of vectors on both sides."""
+def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
+    """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
-    return is_cross_letter(before, after, vectors)
+    return is_cross_letter(before, factor, vectors)
 
 
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names on either side of the sign of a cross product."""
+    """Yield the names on the left and on the right of the sign of a cross product; they are vectors."""
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
+        factor = last if is_mass_before_vector(after, last) else after
         if (sign.kind == "mark" and sign.text == "×") or (
-            "x" not in alone and _is_cross(before, sign, after, vectors) and ("cross", sign.start) not in flips
+            "x" not in alone and _is_cross(before, sign, after, factor, vectors) and ("cross", sign.start) not in flips
         ):
             if "number" in (before.kind, after.kind):
                 continue
@@ -446,12 +462,13 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 
 
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names that other signs show to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
+    """Yield the names that their notation shows to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
 
-    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b are
-    vectors that a matrix R rotates.
+    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b
+    are vectors that a matrix R rotates.
     """
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
+    yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
@@ -476,6 +493,18 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
             yield name.text
 
 
+def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
+    """Yield the names F and d of ``F·d = F d cos θ``, whose scalar product is given by their lengths."""
+    texts = [token.text for token in tokens if token.kind != "end"]
+    for sides in (texts, texts[::-1]):
+        first, dot, second, sign, *rest = [*sides, *[""] * 4]
+        names = [word for word in rest if word and word not in ("*", "·", "|", "(", ")")]
+        is_product = dot == "·" and sign in ("=", "==") and is_usual_vector(first) and is_usual_vector(second)
+        has_lengths = {first, second} <= {*names} or first + second in names
+        if is_product and first != second and len(names) <= 4 and "cos" in names and has_lengths:
+            yield from (first, second)
+
+
 def _is_dot(token: Token) -> bool:
     return token.kind == "mark" and token.text == "." and token.spaced
 
@@ -491,9 +520,9 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return a tree with functions of time written ``f(t)``, and with tables of numbers as matrices.
+    """Return the final tree: functions of time become ``f(t)``, tables of numbers become matrices.
 
-    A vector is written without ``(t)``, and its square is a scalar product.
+    A vector stays without ``(t)``, and its square becomes a scalar product.
     """
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
@@ -516,7 +545,7 @@ def _finished(node: Node, timed: Collection[str], vectors: Collection[str], pare
 
 
 def with_time(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which names that depend on time are written ``f(t)``."""
+    """Return a tree in which the names that depend on time are written ``f(t)``."""
     if node.kind == "name" and node.value in names:
         return Node("call", node.value, (TIME,))
     if node.kind == "call" and node.value in names:
@@ -530,7 +559,7 @@ def readings_of(source: str, where: str = "", declared: Declared | None = None) 
     Raises
     ------
     InputError
-        Naming the first position that cannot be read.
+        If the text cannot be read; the message gives the first such position.
 
     Examples
     --------
@@ -567,7 +596,7 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings of a text as people type it: the usual one first, then the other ones."""
+    """Yield the readings of a text that is not SymPy syntax: the usual one first."""
     try:
         yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
     except InputError:
@@ -576,9 +605,10 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the readings of a text: the usual one first, then those in which a doubtful place has its other meaning.
+    """Yield the readings of a text: the usual one first, then those with other meanings of its ambiguous places.
 
-    ``read`` returns the reading in which the doubts with the given keys have their less usual meaning.
+    ``read`` parses the text; its argument lists the keys of the ambiguous places that take their less usual
+    meaning.
     """
     usual = read(())
     yield usual
@@ -594,9 +624,9 @@ def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iter
 
 
 def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
-    """Return the readings that have different trees.
+    """Return the readings without those that have the same trees as an earlier one.
 
-    If there are too many to try, a note on the first reading says so.
+    If there are too many to try, a note on the usual reading says so.
     """
     by_trees: dict[Any, Reading] = {}
     for reading in readings:
@@ -609,9 +639,9 @@ def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
 
 
 def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
-    """Return the reading of a text with a single interpretation; raise InputError for a text with several.
+    """Return the reading of a text that has only one; raise InputError for an ambiguous text.
 
-    With ``rates``, a prime after a name is certainly a rate.
+    With ``rates``, a prime after a name always means its rate.
     """
     usual = readings[0]
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
@@ -638,7 +668,7 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
     Raises
     ------
     InputError
-        Naming the first position that cannot be read, or that has two readings.
+        If the text cannot be read or has two readings; the message gives the first such position.
 
     Examples
     --------
@@ -686,7 +716,7 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return the reading of SymPy's text (None for any other text), and the error of a text that cannot be read."""
+    """Return the reading if a text is in SymPy syntax, else None; and the error if the text cannot be read as such."""
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)
     except InputError as reason:

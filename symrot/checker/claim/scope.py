@@ -1,4 +1,4 @@
-"""The scope in which a claim is evaluated: its names, the divisors and roots of its text, and its errors."""
+"""The scope in which a claim is evaluated: its names, the divisors and roots of its text, and its error messages."""
 
 from abc import ABC, abstractmethod
 from collections import Counter
@@ -21,14 +21,14 @@ MOST_BITS_FACTORED = 64
 
 @dataclass(frozen=True)
 class Divisor:
-    """A divisor in the text of a claim, as a SymPy expression."""
+    """A formula that a claim divides by, as a SymPy expression, and its place in the tree."""
 
     value: Expr
     node: Node
 
 
 def is_matrix(value: Any) -> bool:
-    """Return whether a value is a matrix; a column vector is a matrix too."""
+    """Return whether a value is a matrix; a column vector is one too."""
     return isinstance(value, sympy.MatrixBase)
 
 
@@ -38,7 +38,7 @@ def described(value: Any) -> str:
 
 @dataclass
 class Scope(ABC):
-    """The names of one claim, the divisors and radicands of its text, and errors for formulas without a value.
+    """The names of one claim, the divisors and radicands of its text, and error messages with positions.
 
     Attributes
     ----------
@@ -51,11 +51,11 @@ class Scope(ABC):
     implied : bool
         Whether undeclared names become real symbols and functions of time.
     divisors : list of Divisor
-        Divisors of the text that may vanish; evaluation adds to them.
+        Divisors in the text that may be zero; each evaluation appends its own.
     radicands : list of Expr
-        Formulas under its even roots that may be negative; evaluation adds to them.
+        Formulas under even roots that may be negative; each evaluation appends its own.
     bases : list of Expr
-        Bases of powers whose exponents are not numbers; the powers are read for positive bases.
+        Bases of powers whose exponents are not numbers; they are assumed to be positive.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -69,7 +69,10 @@ class Scope(ABC):
 
     @property
     def assumed_bases(self) -> tuple[Expr, ...]:
-        """The bases of powers that nothing else in the text, such as a logarithm of the base, shows to be positive."""
+        """The bases of powers that are assumed to be positive, since nothing else in the text implies it.
+
+        A logarithm of the base, for example, would imply it.
+        """
         powers = Counter(self.bases)
         radicands = Counter(self.radicands)
         return tuple(base for base, times in powers.items() if radicands[base] <= times)
@@ -89,13 +92,16 @@ class Scope(ABC):
         return value
 
     def argument(self, node: Node, of: str) -> Expr:
-        """Return the value of a tree, an argument of the function ``of``; refuse too deeply nested functions."""
+        """Return the scalar value of a function's argument; raise InputError if its functions are nested too deeply.
+
+        ``of`` are words for the error message, such as "as the argument of sin".
+        """
         value = self.scalar(node, of)
         self.within_nesting(value, node)
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Raise InputError for a value with so many functions and roots inside each other that one more is too many."""
+        """Raise InputError if one more function or root around the value would exceed the limit on nesting."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
@@ -114,19 +120,22 @@ class Scope(ABC):
         return value
 
     def shape(self, value: Any, node: Node) -> tuple[int, int] | None:
-        """Return the shape of a matrix, or None for a scalar; refuse a list."""
+        """Return the shape of a matrix, or None for a scalar; raise InputError for a list."""
         if isinstance(value, tuple):
             raise self.fail(node, "a formula instead of a list (write Matrix([..]))")
         return (value.rows, value.cols) if is_matrix(value) else None
 
     def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
-        """Return a value unchanged; refuse a value of more than ``most`` symbols, numbers and operations."""
+        """Return the value; raise InputError if it has more than ``most`` symbols, numbers and operations."""
         if pieces(value if is_matrix(value) else [value]) > most:
             raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Record a divisor; refuse one that SymPy knows to be zero (the exact engine refuses the others)."""
+        """Record a divisor of the text.
+
+        Raise InputError if SymPy knows that it is zero; the exact engine refuses other zeros.
+        """
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")
         for factor in Mul.make_args(value):
@@ -136,12 +145,12 @@ class Scope(ABC):
                 self.divisors.append(Divisor(base, node))
 
     def factorable(self, value: Expr, node: Node) -> None:
-        """Refuse the root of a number that is too long to be factored."""
+        """Raise InputError for a number under a root that is too long to be factored."""
         if value.is_Rational and max(int(value.p).bit_length(), int(value.q).bit_length()) > MOST_BITS_FACTORED:
             raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record the formula under an even root; refuse a negative number."""
+        """Record a formula under an even root; raise InputError for a negative number."""
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):
             raise self.fail(node, "a number that is not negative under a root")

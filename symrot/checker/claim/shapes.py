@@ -33,7 +33,7 @@ FIXED: Mapping[str, Shape] = {
 
 
 def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
-    """Return the shape of a formula, whose names have ``shapes`` (a scalar if absent)."""
+    """Return the shape (rows, columns) of a formula, None for a scalar; ``shapes`` are those of its names."""
     if node.kind == "name":
         return shapes.get(str(node.value))
     inner = [shape_of(child, shapes) for child in node.args]
@@ -69,9 +69,9 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return a relation with unit matrices where a scalar I or 1 is added to a square matrix or equal to one.
+    """Return an equation with a unit matrix in place of a scalar I or 1 that is added or equal to a square matrix.
 
-    In ``I = [[a, b], [c, d]]`` the letter I names the matrix.
+    ``I = [[a, b], [c, d]]`` stays unchanged, since there the letter I names the matrix.
     """
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
@@ -85,14 +85,14 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 
 
 def _is_name_of(name: Node, matrix: Node) -> bool:
-    """Return whether a side is a letter alone, and the other side a matrix that is written out with letters in it."""
+    """Return whether one side is the name of a unit matrix, such as I, and the other a matrix that contains letters."""
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
     letters = [node for _, node in walk(matrix) if node.kind == "name"]
     return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names of unknown shape that are terms of a sum of vectors or matrices, with the shape of the sum."""
+    """Return the names of unknown shape that are terms in a sum of vectors or matrices, with the shape of the sum."""
     added: dict[str, Shape] = {}
     for side in relation[1:]:
         for _, node in walk(side):
@@ -106,7 +106,7 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names of unknown shape in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)``: they are vectors."""
+    """Return the names of unknown shape in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)``, as names of vectors."""
     calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
     names = [argument for call in calls if call.kind == "call" for argument in call.args
              if argument.kind == "name" and len(call.args) < 3]  # fmt: skip
@@ -114,7 +114,7 @@ def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape])
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names of unknown shape that must be columns: w in ``q' = (1 + [q] + q q^T) w`` for a vector q."""
+    """Return the names that must be column vectors: w in ``q' = (1 + [q] + q q^T) w``, since q is a vector."""
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""
@@ -139,7 +139,7 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return a scalar formula with a unit matrix in place of I or 1; None if it has neither as a factor."""
+    """Return a formula with the unit matrix in place of its factor I or 1; None if it has no such factor."""
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

@@ -1,4 +1,4 @@
-"""Bounds on the size of a formula, computed before it is built, so that one too large to expand is refused."""
+"""Bounds on the size of a formula, computed before SymPy builds it: a formula too large to expand is refused."""
 
 from typing import Any
 
@@ -41,7 +41,7 @@ takes seconds, at depth 25 minutes."""
 
 
 def nesting(formula: Expr) -> int:
-    """Return the depth of a formula: the largest number of functions and fractional powers inside each other."""
+    """Return the depth of a formula: how many functions and fractional powers are nested in each other."""
     depths: dict[Any, int] = {}
 
     def depth(node: Any) -> int:
@@ -54,9 +54,9 @@ def nesting(formula: Expr) -> int:
 
 
 def products_of_determinant(matrix: Any) -> int:
-    """Return the number of products without a zero factor in the expansion of a determinant.
+    """Return how many products without a zero factor the expansion of a determinant has.
 
-    The expansion goes row by row; ``ways`` maps each set of used columns, as bits, to the number of products so far.
+    The count goes row by row; ``ways`` maps each set of used columns, as bits, to the number of products so far.
     """
     ways = {0: 1}
     for row in range(matrix.rows):
@@ -71,7 +71,7 @@ def products_of_determinant(matrix: Any) -> int:
 
 
 def terms_of_angle(angle: Expr) -> int:
-    """Return about how many terms the sine of a sum of angles has when it is expanded: sin(a + b) has two."""
+    """Estimate how many terms the sine of an angle has when it is expanded: two for the angle a + b."""
     terms, number = 1, 0
     for term in angle.as_ordered_terms() if angle.is_Add else [angle]:
         multiple, atom = term.as_coeff_Mul()

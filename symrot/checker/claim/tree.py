@@ -1,8 +1,8 @@
-"""The tree of a claim's text: the formula as it is written, with its place, before any simplification. No SymPy.
+"""The tree of a claim's text: the formula as it is written, with positions, before any simplification. No SymPy.
 
-Sums and products are flat and keep their order, since edits of a formula (a sign, a factor, the order of a product) are
-edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second factor is
-``inv``.
+Sums and products are flat lists and keep their order, since edits of a formula (a sign, a factor, the order of a
+product) are edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second
+factor is ``inv``.
 
 =========  =======================  ==================================
 kind       value                    args
@@ -32,7 +32,7 @@ Path = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One piece of a formula; ``span`` is its place in the source text, which comparisons ignore."""
+    """One node of a formula's tree; ``span`` is its place in the source text, which comparisons ignore."""
 
     kind: str
     value: Any = None
@@ -47,7 +47,7 @@ def number(value: int | Fraction) -> Node:
 
 
 def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the sum of terms, with terms that are sums merged into it; 0 for an empty list."""
+    """Return the sum of terms, in which terms that are sums themselves are merged; 0 for an empty list."""
     flat: list[Node] = []
     for term in terms:
         flat.extend(term.args if term.kind == "sum" else (term,))
@@ -57,7 +57,7 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the product of factors, with its sign in front; factors that are products are merged into it.
+    """Return the product of factors, with its sign in front; factors that are products themselves are merged.
 
     The product of an empty list is 1.
     """
@@ -72,19 +72,19 @@ def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def negated(node: Node) -> Node:
-    """Return -node without a double sign."""
+    """Return -node; for a node that is ``-x``, return x."""
     return node.args[0] if node.kind == "neg" else Node("neg", None, (node,), node.span)
 
 
 def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield every piece with the path to it, outer before inner, left to right."""
+    """Yield every node with the path to it, parents before children, left to right."""
     yield path, node
     for place, child in enumerate(node.args):
         yield from walk(child, (*path, place))
 
 
 def replaced(node: Node, path: Path, edit: Callable[[Node], Node]) -> Node:
-    """Return the tree in which the function ``edit`` has been applied to the piece at a path."""
+    """Return the tree in which ``edit`` has been applied to the node at the given path."""
     if not path:
         return edit(node)
     place, *rest = path
@@ -98,7 +98,7 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with as few brackets as its meaning allows; the reader reads the same tree from it."""
+    """Return the text of a tree, with as few brackets as its meaning allows; parsing it gives the same tree again."""
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT

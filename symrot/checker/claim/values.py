@@ -1,4 +1,4 @@
-"""Worked numbers: an exact value, compared with the decimal number that a document prints for it."""
+"""Worked numbers of a document: the exact value of a formula, compared with the decimal number printed for it."""
 
 import re
 from fractions import Fraction
@@ -19,7 +19,7 @@ _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", 
 
 
 def decide_value(claim: Claim) -> Decision:
-    """Return the decision whether a value lies within half a unit of the last digit of the number printed for it.
+    """Decide whether a value lies within half a unit of the last digit of the number that is printed for it.
 
     Raises
     ------
@@ -42,14 +42,17 @@ def decide_value(claim: Claim) -> Decision:
         return Decision("true")  # 4.905 rounds to 4.91 and, by another rule, to 4.90
     interval = enclosure(value)
     if interval is None:
-        return Decision("undecided", reason=f"no enclosure of {as_text(value)} is known here")
+        return Decision("undecided", reason=f"no interval is known that encloses {as_text(value)}")
     low, high = (iv.mpf(int(n.numerator)) / int(n.denominator) for n in (printed - unit / 2, printed + unit / 2))
     if low.b <= interval.a and interval.b <= high.a:
         return Decision("true")
     if interval.b < low.a or high.b < interval.a:
         exact = f"{as_text(value)} = {float(interval.mid):.12g}.."
         return Decision("false", counterexample=Counterexample((), None, exact, claim.printed.strip()))
-    return Decision("undecided", reason="the value lies on the edge of what rounds to the printed digits")
+    return Decision(
+        "undecided",
+        reason="the value is too close to the middle between two roundings to tell its last digit",
+    )
 
 
 def _printed(text: str, where: str) -> tuple[Fraction, Fraction]:

@@ -1,7 +1,7 @@
-"""The vectors and tensors of a claim: their components, named for them, and their lengths.
+"""The vectors and tensors of a claim: how their components are named, and where their names mean lengths.
 
 A name with a mark (bold type, an arrow or a hat) is a vector, ``a`` with the components a_x, a_y and a_z; the same
-letter in plain type is its length. While LaTeX is read, the ending ``MARK`` of a name says that the name has a mark.
+letter in plain type is its length. While LaTeX is read, names with a mark end with ``MARK``.
 """
 
 import re
@@ -35,10 +35,11 @@ TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Vector:
-    """A name that is a vector or, as I and J are, a symmetric tensor.
+    """A name that means a vector or, as I and J do, a symmetric tensor.
 
-    ``timed``: its components depend on time. ``unit``: a hat over the name says that its length is one. ``axes``: the
-    last letters of the names of its components.
+    ``timed``: its components depend on time. ``unit``: a hat over the name says that its length is one. ``axes``:
+    the last letters of the names of its components, such as "xyz". ``place``: the number of its axis, if it belongs
+    to a basis.
     """
 
     name: str
@@ -60,7 +61,7 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it is a coordinate axis: x, y or z with a hat, or a vector of a basis, such as i, j and k."""
+        """Whether it is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
@@ -68,7 +69,7 @@ class Vector:
 
     @property
     def length_is_one(self) -> tuple[str, Node, Node]:
-        """The hypothesis that the length of a unit vector is one."""
+        """The hypothesis that the length of this unit vector is one."""
         own = Node("name", self.name)
         return "==", Node("call", "dot", (own, own)), number(1)
 
@@ -87,7 +88,7 @@ def is_tensor(name: str) -> bool:
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether the definition of a name only says what its components are called: ``R_11`` and so on."""
+    """Return whether a name's definition only lists its components, such as ``R_11``, without giving them values."""
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]
@@ -119,9 +120,9 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
 
 
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
-    """Return the vectors that occur in a claim and need components.
+    """Return the vectors of a claim for which component names must be made.
 
-    A vector that is a side of the claim by itself, and occurs nowhere else, needs none. The components of R are
+    A vector that is a whole side of the claim, and occurs nowhere else, needs none. The components of R are
     numbered, since R_x is a rotation.
 
     ``names`` are the names of vectors and tensors; the value is True for one with a hat.
@@ -147,7 +148,7 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the last letters of the names of a vector's components: numbers if the names ``used`` have them."""
+    """Return the ends of the names of a vector's components: "123" if the text has such names, usually "xyz"."""
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
         return "0123" if "0" in numbers else "1234"
@@ -166,7 +167,7 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
-    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``, which a scalar J would make zero.
+    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``: with a scalar J these would be zero.
 
     In ``w.T*J*w`` J is a tensor too.
     """
@@ -184,7 +185,7 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
 
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
-    """Return the names that are a side of a claim by themselves and occur nowhere else in it."""
+    """Return the names that are a whole side of the claim and occur nowhere else in it."""
     everywhere = [node.value for side in sides for _, node in walk(side) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
     alone = [side for side in sides if side.kind == "name" and not is_number]
@@ -192,13 +193,13 @@ def _lone_names(sides: Sequence[Node]) -> set[str]:
 
 
 def with_scalar_products(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which the scalar product of a and b replaces a.T*b, for vectors a and b in ``names``."""
+    """Return a tree with the scalar product ``dot(a, b)`` in place of ``a.T*b``, for vectors a and b in ``names``."""
     made = replace(node, args=tuple(with_scalar_products(child, names) for child in node.args))
     return _with_scalar_products(made, [Node("name", name) for name in names]) if made.kind == "product" else made
 
 
 def _with_scalar_products(node: Node, vectors: Sequence[Node]) -> Node:
-    """Return a product in which the scalar product of two vectors a and b replaces a.T*b."""
+    """Return a product with ``dot(a, b)`` in place of ``a.T*b``, for the given ``vectors``."""
     factors: list[Node] = []
     for factor in node.args:
         last = factors[-1] if factors else None

@@ -1,1 +1,1 @@
-"""What a person says about a claim in words: the meaning of names, the body, the frame and the sequence of angles."""
+"""The context that a person states in words: meanings of names, the body, the frame and the sequence of angles."""

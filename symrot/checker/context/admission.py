@@ -1,6 +1,7 @@
-"""Whether a derived formula fits the context of a claim, and which words of its name the context leaves open.
+"""Whether a known formula fits the context of a claim, judged by the words in the name of the formula.
 
-The place of an axis is the point through which it passes; the titles of places are phrases such as "about an end".
+Each formula that symrot derives has a name, such as "moment of inertia of a thin rod about an end, x axis". A place is
+the point through which an axis passes; its title is a phrase such as "about an end".
 """
 
 import re
@@ -47,29 +48,29 @@ ANGLES = ("phi", "theta", "psi")
 
 
 def frame_of(name: str) -> str:
-    """Return the frame in the name of a derived formula, ``"body"``, ``"space"`` or an empty text."""
+    """Return the frame that the name of a derived formula states: ``"body"``, ``"space"`` or an empty text."""
     match = _FRAME.search(name)
     return match[1] if match else ""
 
 
 def sequence_of(name: str) -> str:
-    """Return the sequence of angles in the name of a derived formula, or an empty text."""
+    """Return the sequence of Euler angles in the name of a derived formula, or an empty text."""
     return next((word for word in re.findall(r"[A-Za-z]+", name) if word in SEQUENCES), "")
 
 
 def place_of(name: str) -> str:
-    """Return the title of the place of an axis in the name of a derived formula, or an empty text."""
+    """Return the title of the place in the name of a derived formula, such as "about an end", or an empty text."""
     places = [(phrase, title) for title, _, phrases in PLACES for phrase in phrases if phrase in name]
     return max(places, key=lambda pair: len(pair[0]))[1] if places else ""
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a derived formula with a name may be the formula for a quantity in a context."""
+    """Return whether a derived formula may be the formula for a quantity in a context, judged by the formula's name."""
     return not any(misfits(context, name, quantity))
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield words of a derived formula's name that contradict the context: "for the space frame", "about an end"."""
+    """Yield contradictions between a derived formula's name and the context: "for the space frame", "about an end"."""
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):
@@ -112,14 +113,17 @@ DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "x
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether the formula with a name is about one of some axes, if its body is round or a rod."""
+    """Return whether a formula, by its name, is for one of the given ``axes``.
+
+    For a body that is neither round nor a rod, any axis is accepted.
+    """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
     return axis is None or not bodies_of_formula(name) & {*bodies} or axis[1] in axes
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula with a name is about a line, such as a diameter of its body."""
+    """Return whether a formula, by its name, is for an axis along a line such as a diameter of its body."""
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -130,7 +134,7 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether the formula with a name is about a radius through a point of the rim or of the surface.
+    """Return whether a formula, by its name, is for a radius through a point of the rim or surface.
 
     Such an axis is hardly meant, unless the name of the quantity says which axis it is.
     """
@@ -138,7 +142,7 @@ def _is_radial(name: str, quantity: str) -> bool:
 
 
 def is_component(name: str, quantity: str) -> bool:
-    """Return whether the component or axis in the name of a formula is the one in the name of a quantity.
+    """Return whether a formula's name states the same component or axis as the index of a quantity does.
 
     A quantity without an index may be any component, and so may the rate of an angle.
     """
@@ -150,12 +154,12 @@ def is_component(name: str, quantity: str) -> bool:
 
 
 def place_exists(place: str) -> bool:
-    """Return whether the names of some derived formulas contain the place with this title."""
+    """Return whether symrot derives formulas for the place with this title."""
     return any(title == place and phrases for title, _, phrases in PLACES)
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula is for one place, while the context says a pivot, which may be at any place."""
+    """Return whether a formula is for a certain place, while the context only says a pivot, which may be anywhere."""
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 
@@ -166,8 +170,8 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
     """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
 
-    ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed symbols;
-    any other letter of the claim is the symbol of the same name.
+    ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed
+    symbols; any other letter of the claim is the symbol of the same name.
     """
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
@@ -206,7 +210,7 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the sequence about fixed axes that equals one about moving axes with its angles reversed; or vice versa.
+    """Return the sequence about fixed axes that equals one about moving axes with reversed angles; or vice versa.
 
     The result is an empty text for a sequence such as ZXZ.
 
@@ -219,7 +223,7 @@ def same_rotation(sequence: str) -> str:
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether a symbol of derived formulas can be what words say: ``dphi`` is a rate of precession."""
+    """Return whether a symbol of derived formulas fits a meaning in words: ``dphi`` fits "rate of precession"."""
     pattern = meaning.quantity.symbols
     if not pattern:
         return True
@@ -236,9 +240,10 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in the name of a derived formula that neither the context nor the quantity's name implies.
+    """Return the words in a derived formula's name that neither the context nor the name of the quantity implies.
 
-    ``stated`` are the words that the quantity's name implies, such as "moment of inertia z axis" for I_zz.
+    A verdict that relies on the formula guesses these words. ``stated`` are the words that the quantity's name
+    implies, such as "moment of inertia z axis" for I_zz.
     """
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:
@@ -268,13 +273,13 @@ def guesses(context: Context, name: str, stated: str) -> list[str]:
 
 
 def is_place(words: str) -> bool:
-    """Return whether words are the title of a place, such as "about an end"."""
+    """Return whether a phrase is the title of a place, such as "about an end"."""
     return any(words == title for title, _, _ in PLACES)
 
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text that distinguish formulas, in one spelling."""
+    """Return the words of a text that tell formulas apart, each in one spelling."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

@@ -1,17 +1,17 @@
-"""Which letter of a claim is which angle of an Euler sequence: by the words about it, by books, or any.
+"""Assigning the letters of a claim to the angles of an Euler sequence, by words about them or by the usage of books.
 
 Words decide first: "yaw" is the angle about z, "precession angle" the first one. Letters that nothing states are tried
 in each order that books use for them; alpha, beta and gamma in every order.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
 from symrot.checker.context.context import Context
 
-__all__ = ["AXIS_OF_ANGLE", "Order", "has_order", "letter_of_angle", "orders", "place_by_words"]
+__all__ = ["AXIS_OF_ANGLE", "Order", "are_roll_pitch_yaw", "has_order", "letter_of_angle", "orders", "place_by_words"]
 
 FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
@@ -32,25 +32,39 @@ PLACE_OF_ANGLE = {
 
 @dataclass(frozen=True)
 class Order:
-    """The place, from 0, of each angle of a claim in a sequence; ``guess`` says what nothing states, or is empty."""
+    """One assignment of letters to the angles of a sequence: ``places`` maps each letter to 0, 1 or 2.
+
+    ``guess`` says what in it is not stated; it is empty if everything is.
+    """
 
     places: dict[str, int]
     guess: str = ""
 
 
 def has_order(sequence: str) -> bool:
-    """Return whether every reader takes phi as the first angle of a sequence and psi as the third: ZXZ, not ZYX."""
+    """Return whether all books take phi as the first and psi as the third angle of a sequence: ZXZ, but not ZYX."""
     return bool(sequence) and sequence[0] == sequence[-1]
 
 
+def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
+    """Return whether phi, theta and psi are angles about x, y and z, as next to the rates p, q and r of an aircraft.
+
+    ``places`` maps letters to their places in the sequence. A sequence such as ZXZ has no such angles: return True.
+    """
+    axes = {"phi": "X", "theta": "Y", "psi": "Z"}
+    return has_order(sequence) or all(
+        sequence[place].upper() == axes[letter] for letter, place in places.items() if letter in axes
+    )
+
+
 def letter_of_angle(name: str) -> str:
-    """Return the usual spelling of an angle, such as phi for varphi; empty for a name that is no angle."""
+    """Return the usual spelling of an angle's letter, such as phi for varphi; empty for a name that is no angle."""
     name = re.sub(r"^(theta|q)([1-3])$", r"\1_\2", SPELLINGS.get(name, name))
     return name if any(name in family for family in FAMILIES) else ""
 
 
 def place_by_words(title: str, sequence: str) -> int | None:
-    """Return the place in a sequence of an angle with a title such as "yaw" or "spin angle"; None if it has none.
+    """Return the place (0, 1 or 2) of an angle in a sequence by its title, "yaw" or "spin angle"; None if unknown.
 
     Examples
     --------
@@ -65,7 +79,7 @@ def place_by_words(title: str, sequence: str) -> int | None:
 
 
 def orders(context: Context, letters: Sequence[str], sequence: str) -> Iterator[Order]:
-    """Yield the orders in which some letters can be the angles of a sequence, the likeliest first.
+    """Yield the possible assignments of letters to the angles of a sequence, the likeliest first.
 
     There is none for letters that no book uses together.
     """
@@ -104,12 +118,12 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the order that needs no words: of phi, theta and psi in ZYX, psi is the first angle."""
+    """Return the order of three letters that needs no words: in ZYX, of phi, theta and psi, psi is the first angle."""
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 
 
 def _usual_orders(family: tuple[str, str, str], sequence: str) -> Iterator[tuple[str, ...]]:
-    """Yield the orders in which books use the letters of a family, the likeliest first."""
+    """Yield the orders in which books use three letters for the angles of a sequence, the likeliest first."""
     if family == ("yaw", "pitch", "roll"):
         letters = dict(zip("ZYX", family, strict=True))
         yield family if has_order(sequence) else tuple(letters[axis] for axis in sequence.upper())

@@ -1,7 +1,7 @@
 """Claims that mix rates of Euler angles with components of the angular velocity: ``psi' = omega_3 - phi' cos theta``.
 
-Each follows from ``omega = B(q) dq/dt`` or contradicts it, whatever it is solved for: the components are replaced by
-their formulas in the angles and rates, which are independent, and the rest must be an identity.
+Each of them follows from ``omega = B(q) dq/dt`` or contradicts it, whatever it is solved for. So the components are
+replaced by their formulas in the angles and rates, which are independent, and the result must be an identity.
 """
 
 import re
@@ -12,7 +12,7 @@ from sympy import Expr, Matrix, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
-from symrot.checker.context.angle_orders import letter_of_angle, orders
+from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
 from symrot.checker.context.substitution import Substitution
 from symrot.conventions import SEQUENCES
@@ -30,7 +30,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways of reading a claim as one about the rates of a sequence and the angular velocity.
+    """Yield the ways to read a claim as one about the rates of a sequence and the angular velocity.
 
     There is none if the claim has another letter, no rate, or no component.
     """
@@ -42,10 +42,13 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     letters = list(dict.fromkeys([*rates.values(), *angles.values()]))
     if not components or not rates or not all(map(letter_of_angle, letters)):
         return
+    is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
     for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
         for order in orders(context, letters, sequence):
+            if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):
+                continue
             q, dq = _coordinates(order.places)
             rates_matrix = rate_jacobian(sequence, frame)
             omega = Matrix(rates_matrix.xreplace(dict(zip(rates_matrix.parameters, q, strict=True)))) * Matrix(dq)
@@ -64,13 +67,13 @@ TIME = Symbol("t", real=True)
 
 
 def _plain(atom: Expr) -> str:
-    """Return the name of an atom; the rate of an angle has a ``d`` in front."""
+    """Return the name of an atom (symbol or rate); the rate of an angle has a ``d`` in front."""
     name = plain(as_text(atom))
     return f"d{name.removesuffix('_dot')}" if name.endswith("_dot") else name
 
 
 def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
-    """Return the frames in which the components of a claim may be: the stated one, or both."""
+    """Return the frames that the components in a claim may belong to: the stated frame, or both."""
     stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
     stated |= {context.frame} if context.frame else set()
     if not stated and any(match[2] for match in components.values()):
@@ -79,7 +82,7 @@ def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.
 
 
 def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
-    """Return symbols for the three angles and their rates, with the names of the claim's angles where it has them."""
+    """Return symbols for the three angles and their rates, named as in the claim where it has them."""
     names = {place: name for name, place in places.items()}
     unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)
     letters = [names.get(place) or next(unused) for place in range(3)]

@@ -1,7 +1,7 @@
-"""Claims about a free symmetric body: its axis, its angular momentum and its angular velocity lie in one plane.
+"""Claims about a free symmetric body, whose axis, angular momentum and angular velocity lie in one plane.
 
-The tangents of the angles between them have the ratio of the moments; claims may be solved for either angle, and books
-use the same letters for both.
+The tangents of the two angles to the axis have the ratio of the moments of inertia. Claims may be solved for either
+angle, and books use the same letters for both.
 """
 
 import re
@@ -27,12 +27,12 @@ NAME = "relation for the angles of momentum and angular velocity to the axis of 
 
 
 def is_stated(context: Context) -> bool:
-    """Return whether words say which of two angles is that of the angular velocity."""
+    """Return whether the context says in words which of two angles belongs to the angular velocity."""
     return any(meaning.quantity.title in (OF_MOMENTUM, OF_VELOCITY) for meaning in context.meanings)
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways of reading a claim as one about the two angles; none if it has other letters than these."""
+    """Yield the ways to read a claim as the relation between the two angles; none if it has other letters."""
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}

@@ -1,4 +1,4 @@
-"""The bodies that words such as "solid cylinder of radius r" name, with the letters of their dimensions."""
+"""The bodies that words such as "solid cylinder of radius r" mean, with the letters of their dimensions."""
 
 import re
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ __all__ = ["BODIES", "Body", "Kind", "bodies_of_formula", "body_of_words"]
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of body.
+    """A kind of body, such as a solid cylinder.
 
     Attributes
     ----------
@@ -23,11 +23,11 @@ class Kind:
     synonyms : tuple of str
         Other names.
     formulas : tuple of str
-        The phrases for it in the names of derived formulas.
+        The phrases that stand for it in the names of derived formulas.
     shape : str
-        The shape of :mod:`symrot.inertia.shapes` that has its dimensions, or an empty text.
+        The name of this shape in :mod:`symrot.inertia.shapes`, or an empty text.
     thin : tuple (str, str) or empty
-        The phrase and the shape of the body with a thin wall, which is meant as well if only one radius is stated.
+        Phrase and shape of the body with a thin wall, which may be meant too if only one radius is stated.
     """
 
     title: str
@@ -38,13 +38,13 @@ class Kind:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """The title and the synonyms as plain words."""
+        """The title and the synonyms in lower case and in one spelling."""
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body in words: its kind, and the letters of its dimensions and moments.
+    """A body as words describe it: its kind, and the letters of its dimensions and moments.
 
     Attributes
     ----------
@@ -52,14 +52,14 @@ class Body:
     motion : str
         ``"rolls"``, ``"rolls down a slope"``, ``"rolls from a height"``, ``"general"``; otherwise empty.
     letters : mapping
-        Symbol of the derived formulas -> letter in the claim, such as ``{"R": "r"}`` for "of radius r".
+        Symbol in the derived formulas -> letter in the claim, such as ``{"R": "r"}`` for "of radius r".
     place : str
         The title of a place of :data:`symrot.checker.context.quantities.PLACES`, such as "about an end", or of a line
         of :data:`symrot.checker.context.quantities.LINES`; or empty.
     rest : str
-        The words that say something about the body that symrot does not know.
+        The words about the body that symrot does not understand.
     factors : mapping
-        Symbol -> the dimension in units of its letter, if it is not 1: ``{"R": 1/2}`` for "of diameter d".
+        Symbol -> its ratio to the letter, if it is not 1: ``{"R": 1/2}`` for "of diameter d", since R = d/2.
     axes : str
         The axes that the words allow, such as ``"z"`` for "perpendicular to its plane"; empty for all.
     """
@@ -74,7 +74,7 @@ class Body:
 
     @property
     def formulas(self) -> tuple[str, ...]:
-        """The phrases for the body in the names of derived formulas, by the radii that are stated."""
+        """The phrases for the body in the names of derived formulas; they depend on the radii that are stated."""
         if not self.kind.thin:
             return self.kind.formulas
         thin = self.kind.thin[0]
@@ -84,11 +84,11 @@ class Body:
 
     @property
     def obscure(self) -> str:
-        """The words that may change the moments of inertia of the body in a way that symrot does not know."""
+        """Words that may change the moments of inertia of the body and that symrot does not understand; often empty."""
         return self.rest if self.kind.shape else ""
 
     def has(self, name: str) -> bool:
-        """Return whether a derived formula, by its name, is one for this body or for any body."""
+        """Return whether a derived formula, by its name, is for this body or for bodies of any kind."""
         phrases = bodies_of_formula(name)
         own = {phrase for phrase in phrases if phrase in self.formulas}
         if self.axes and own and (axis := re.search(r", ([xyz]) axis", name)) and axis[1] not in self.axes:
@@ -208,7 +208,7 @@ ROD = "thin rod"
 
 
 def bodies_of_formula(name: str) -> set[str]:
-    """Return the phrases for bodies that are in the name of a derived formula."""
+    """Return the phrases for bodies that the name of a derived formula contains."""
     phrases: set[str] = set()
     rest = re.sub(r"\ban\b", "a", name)
     for phrase in _FORMULA_PHRASES:
@@ -219,7 +219,7 @@ def bodies_of_formula(name: str) -> set[str]:
 
 
 def body_of_words(words: str) -> Body | None:
-    """Return the body that words name, or None if they name no body that symrot knows.
+    """Return the body that words describe, or None if symrot knows no such body.
 
     Examples
     --------
@@ -251,20 +251,20 @@ def body_of_words(words: str) -> Body | None:
 
 
 def _scaled(term: str) -> tuple[str, Fraction]:
-    """Return the letter of a dimension such as 2a or d/2, and its factor."""
+    """Return the letter and the factor of a dimension: a and 2 for "2a", d and 1/2 for "d/2"."""
     match = re.fullmatch(rf"(\d+)?({_LETTER})(?:/(\d+))?", term)
     assert match is not None
     return match[2], Fraction(int(match[1] or 1), int(match[3] or 1))
 
 
 def _dimensions(kind: Kind) -> list[Dimension]:
-    """Return the dimensions of a kind of body, and those of the body with a thin wall."""
+    """Return the dimensions of a kind of body, and those of the same body with a thin wall."""
     shapes = [name for name in (kind.shape, *kind.thin[1:]) if name]
     return [dimension for name in shapes for dimension in SHAPES[name].dimensions]
 
 
 def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[str, Fraction], str]:
-    """Return the letters of the dimensions and moments of a body, their factors, and the words without them.
+    """Return the letters of a body's dimensions and moments, their factors, and the words that remain.
 
     ``words`` are in the upper and lower case of the input, ``rest`` in lower case.
     """

@@ -6,32 +6,41 @@ of inertia is defined with or without the minus sign, and words may say which.
 
 import re
 from collections.abc import Iterator, Sequence
+from typing import Any
 
-from sympy import Add, Expr, Poly, Symbol
+from sympy import Add, Expr, ImmutableMatrix, Poly, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.admission import plain
 from symrot.checker.context.context import Context
 from symrot.checker.context.substitution import Substitution
+from symrot.checker.verdict import Identification
+from symrot.exact.decide import decide
 from symrot.exact.printing import as_text
 from symrot.inertia.tensor import inertia_of_point
 from symrot.symbols import position
 
-__all__ = ["substitutions_of_gyration", "substitutions_of_integrals"]
+__all__ = ["TENSOR_OF_INTEGRALS", "is_tensor_of_integrals", "substitutions_of_gyration", "substitutions_of_integrals"]
 
 INTEGRAL = re.compile(r"integral_[xyz]{2}")
 ENTRY = re.compile(r"[IJP]_?([xyz1-3])([xyz1-3])?")
 """A moment or a product of inertia; its groups are the axes."""
+
+TENSOR_OF_INTEGRALS = Identification(
+    "inertia tensor as an integral over the body, products of inertia with the minus sign", "", {},
+    "symrot.inertia.tensor.inertia_of_point",
+)  # fmt: skip
 
 AXES = {letter: axis for axis, letters in enumerate(("x1", "y2", "z3")) for letter in letters}
 SIGNS = {"minus": 1, "plus": -1}
 
 
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways of reading a claim as one about entries of the inertia tensor and integrals over the body.
+    """Yield the ways to read a claim as one about entries of the inertia tensor and integrals over the body.
 
-    There is none if the claim has another letter. Products of inertia have the minus sign in the first way, and none in
-    the second, unless words say which sign they have.
+    There is none if the claim has another letter. Unless words say which sign products of inertia have, they have
+    the minus sign in the first way, and none in the second.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -49,14 +58,24 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
         yield Substitution(name, "symrot.inertia.tensor.inertia_of_point", values, guess)
 
 
+def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
+    """Return whether one side is a name of the inertia tensor and the other one its matrix of integrals over a body."""
+    matrices = [side for side in sides if is_matrix(side) and side.shape == (3, 3)]
+    names = [side for side in sides if not is_matrix(side) and re.fullmatch("[IJ](_[A-Za-z])?", as_text(side))]
+    if len(matrices) != 1 or len(names) != 1 or not matrices[0].atoms(Symbol):
+        return False
+    tensor = ImmutableMatrix(3, 3, _entry)
+    return decide(tensor, matrices[0]).verdict == "true"
+
+
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor with a symbol for the integral of each product of two coordinates."""
+    """Return an entry of the inertia tensor as a sum of symbols for the integrals of products of two coordinates."""
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
 
 
 def _product(powers: Sequence[int]) -> str:
-    """Return the coordinates of a product, each as often as its power: "xx" for x^2."""
+    """Return a product of coordinates as text, each as often as its power: "xx" for x^2."""
     return "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True))
 
 

@@ -1,6 +1,6 @@
-"""What a person says about a claim in words: the context, read and checked for contradictions.
+"""The context of a claim, which a person states in words: it is parsed and checked for contradictions here.
 
-With a context, a claim that only names a quantity can be decided: the words say which derived formula is meant.
+With a context, a claim that gives a formula for a quantity can be decided: the words say which known formula is meant.
 """
 
 import re
@@ -67,17 +67,17 @@ def matrix_of(name: str) -> str:
 
 @dataclass(frozen=True)
 class Meaning:
-    """What the words say about one name, or about several.
+    """What the words of the context say about one name, or about several.
 
     Attributes
     ----------
     names : tuple of str
-        The names in the notation of trees, in all ways in which they can be read; a rate has ``d`` in front.
+        The names as they are spelled in trees, with all readings of an ambiguous name; a rate has ``d`` in front.
     quantity : Quantity
     place : str
         The title of a place, such as "about an end", or an empty text.
     body : Body or None
-        The body in the words.
+        The body that the words mention.
     frame : str
         ``"body"``, ``"space"`` or empty.
     written : tuple of str
@@ -123,18 +123,18 @@ class Context:
         return bool(self.meanings or self.body or self.frame or self.sequence)
 
     def meaning_of(self, name: str) -> Meaning | None:
-        """Return what the words say about a name, or None."""
+        """Return what the words say about a name; None if they say nothing."""
         exact = (meaning for meaning in self.meanings if name in meaning.names)
         return next(exact, None) or next((meaning for meaning in self.meanings if meaning.is_of(name)), None)
 
     @property
     def place(self) -> str:
-        """The place of the axis in the words about the body, such as "about an end", or an empty text."""
+        """The place of the axis in the words about the body, such as "about an end"; otherwise an empty text."""
         return self.body.place if self.body else ""
 
     @property
     def sign_of_products(self) -> str:
-        """ "minus" or "plus" if the words say whether products of inertia have the minus sign, otherwise empty."""
+        """ "minus" or "plus" if the words say that products of inertia have or lack the minus sign; otherwise empty."""
         return next((meaning.quantity.sign for meaning in self.meanings if meaning.quantity.sign), "")
 
     @property
@@ -145,7 +145,7 @@ class Context:
 
     @property
     def obscure(self) -> str:
-        """The words about the body, or about the axis of a quantity, that are not understood; often there are none."""
+        """Words about the body, or about the axis of a quantity, that symrot does not understand; often empty."""
         own = [self.body.obscure] if self.body else []
         for meaning in self.meanings:
             own += [meaning.body.obscure] if meaning.body else []
@@ -154,17 +154,17 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str]) -> bool:
-        """Return whether every name with a meaning is one of the ``names`` of a text."""
+        """Return whether a text has every name that the context describes; ``names`` are the names in the text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
-        """Raise InputError for words about a name that a text does not have."""
+        """Raise InputError if the context describes a name that a text does not have."""
         for meaning in self.meanings:
             if not any(meaning.is_of(name) for name in names):
                 raise InputError(f"where: expected words about names that the claim has, got {meaning.written[0]!r}")
 
     def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
-        """Return the units of names that follow from their meanings.
+        """Return the units of ``names`` that follow from their meanings.
 
         Raises
         ------
@@ -186,7 +186,7 @@ class Context:
 
     @property
     def echo(self) -> str:
-        """The context in one line, as it was understood."""
+        """The context in one line, as symrot understood it."""
         parts = [f"{', '.join(meaning.written)} = {_described(meaning)}" for meaning in self.meanings]
         parts += [f"body {_described_body(self.body)}"] if self.body else []
         parts += [f"{self.frame} frame"] if self.frame else []
@@ -202,7 +202,7 @@ _OF_AXES = re.compile(
 
 
 def _has_line(body: Body, line: str) -> bool:
-    """Return whether a body has a line, such as a diameter, if a place is one."""
+    """Return whether a body has a line such as a diameter; True if ``line`` is the title of a place that is no line."""
     return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
 
 
@@ -220,7 +220,7 @@ def _described_body(body: Body) -> str:
 
 
 def _scaled(body: Body, symbol: str) -> str:
-    """Return a dimension of a body with its factor, such as 2*L or d/2."""
+    """Return a dimension of a body as text, with its factor, such as 2*L or d/2."""
     above, below = body.factors.get(symbol, Fraction(1)).as_integer_ratio()
     return f"{above}*" * (above != 1) + body.letters[symbol] + f"/{below}" * (below != 1)
 
@@ -228,7 +228,7 @@ def _scaled(body: Body, symbol: str) -> str:
 def read_context(
     where: Sequence[str] = (), body: str = "", frame: str = "", sequence: str = "", label: str = ""
 ) -> Context:
-    """Return the context that words state.
+    """Return the context that a person states in words.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def read_context(
     body, frame, sequence : str
         A body ("solid cylinder of radius r"), ``"body"`` or ``"space"``, and a sequence of angles ("ZXZ", "3-1-3").
     label : str
-        The place of the words, for messages.
+        Where the words come from, for messages.
 
     Raises
     ------
@@ -267,7 +267,7 @@ def read_context(
 
 
 def _meaning(text: str, prefix: str) -> Meaning:
-    """Return the meaning of one text ``NAME = words``, or ``NAME, NAME = words``."""
+    """Return the meaning that one text ``NAME = words`` or ``NAME, NAME = words`` states."""
     left, sign, words = text.partition("=")
     if not (left.strip() and sign and words.strip(" =")):
         raise InputError(f"{prefix}expected 'NAME = words' like 'I = moment of inertia', got {text[:60]!r}")
@@ -292,13 +292,13 @@ def _meaning(text: str, prefix: str) -> Meaning:
 
 
 def _original(rest: str, words: str) -> str:
-    """Return the remaining plain words with the letters in the case in which they were written."""
+    """Return the words ``rest``, which are in lower case, with the capital letters that they have in ``words``."""
     cases = {word.lower().strip(","): word.strip(",") for word in words.split()}
     return " ".join(cases.get(word.strip(","), word) for word in rest.split())
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a text can stand for; ``x'`` is the rate of x if ``is_rate``, otherwise a name."""
+    """Yield the names that a text can mean; ``x'`` is the rate of x if ``is_rate``, otherwise a name of its own."""
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare
@@ -315,14 +315,14 @@ def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator
 
 
 def quantities_of(tree: Node) -> Iterator[str]:
-    """Yield the names in a tree; a time derivative of x gives ``dx`` and x."""
+    """Yield the names in a tree; for a time derivative of x, yield ``dx`` and x."""
     for _, node in walk(tree):
         if (name := _name(node)) is not None:
             yield name
 
 
 def letters_of(tree: Node) -> Iterator[str]:
-    """Yield the quantities on which a tree depends; a time derivative of x gives ``dx`` alone."""
+    """Yield the names in a tree; for a time derivative of x, yield ``dx`` alone."""
     name = _name(tree)
     if name is not None:
         yield name
@@ -332,7 +332,7 @@ def letters_of(tree: Node) -> Iterator[str]:
 
 
 def _name(tree: Node) -> str | None:
-    """Return the name of a quantity, with ``d`` in front for each time derivative; None for a formula."""
+    """Return the name if a tree is a name or rate, with ``d`` in front for each time derivative; None for a formula."""
     if tree.kind == "name":
         return str(tree.value)
     if tree.kind == "call" and tree.value == "diff":
@@ -344,7 +344,7 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words name, or an empty text, and the other words."""
+    """Return the frame that words state, or an empty text, and the remaining words."""
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
             return frame, words.replace(match[0], " ", 1)
@@ -356,7 +356,7 @@ _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the quantity that words name, and the phrase that names it."""
+    """Return the quantity that words state, and the phrase that states it."""
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
         for quantity in QUANTITIES
@@ -375,7 +375,7 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
 
 
 def _hint(words: str, phrases: dict[str, str]) -> str:
-    """Return the end of a message that names the phrases which are most like some words."""
+    """Return the end of an error message, which suggests the known phrases that are most like some words."""
     nearest = get_close_matches(words, phrases, MOST_NEAREST, 0.4)
     whole = [phrase for phrase in phrases if set(words.split()) & set(phrase.split())]
     names = list(dict.fromkeys(phrases[phrase] for phrase in [*nearest, *whole]))[:MOST_NEAREST]
@@ -384,7 +384,7 @@ def _hint(words: str, phrases: dict[str, str]) -> str:
 
 
 def _body(words: str, prefix: str) -> Body:
-    """Return the body that words name, its letters in the notation of trees."""
+    """Return the body that words describe, with its letters spelled as in trees."""
     body = body_of_words(words)
     if body is None:
         phrases = {phrase: phrase for kind in BODIES for phrase in kind.phrases}
@@ -394,7 +394,7 @@ def _body(words: str, prefix: str) -> Body:
 
 
 def read_frame(words: str, prefix: str = "") -> str:
-    """Return ``"body"`` or ``"space"``.
+    """Return the frame that words state, ``"body"`` or ``"space"``.
 
     Raises
     ------
@@ -408,7 +408,7 @@ def read_frame(words: str, prefix: str = "") -> str:
 
 
 def read_sequence(words: str, prefix: str = "") -> str:
-    """Return the sequence of angles that words name, one of :data:`symrot.conventions.SEQUENCES`.
+    """Return the sequence of Euler angles that words state, one of :data:`symrot.conventions.SEQUENCES`.
 
     Upper case and numbers mean rotations about moving axes; lower case or the word "space" means fixed axes.
 
@@ -451,7 +451,7 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
 
 
 def _check_consistency(context: Context, prefix: str) -> None:
-    """Raise InputError if the words contradict each other, or the usual meaning of a name."""
+    """Raise InputError if statements of the context contradict each other, or the usual meaning of a name."""
     seen: dict[str, Meaning] = {}
     for meaning in context.meanings:
         for name in meaning.names:
@@ -480,7 +480,7 @@ def _check_consistency(context: Context, prefix: str) -> None:
 
 
 def _check_unit(meaning: Meaning, prefix: str) -> None:
-    """Raise InputError if a name means a quantity with another unit to nearly every reader."""
+    """Raise InputError if nearly every reader takes a name for a quantity with another unit."""
     for name in meaning.names:
         usual = conventional_unit(name) if len(name) > 1 else None
         own = meaning.quantity.unit

@@ -1,7 +1,7 @@
-"""Verdicts in a context: with the meaning of its names stated, a claim that names a quantity is true or false.
+"""Verdicts in a context: once the meanings of names are stated, a claim that gives a formula for a quantity is decided.
 
-A derived formula is meant if the context, or the name of the quantity, states every word of the formula's name. The
-claim is true if it is equal to such a formula, and false if it differs from all of them, for every assignment of its
+A known formula is meant if the context, or the name of the quantity, states every word of the formula's name. The claim
+is true if it is equal to such a formula. It is false if it differs from all of them, for every assignment of its
 letters to their symbols. If some words are not stated, the verdict stays what it is without a context, and a note names
 these words.
 """
@@ -99,7 +99,7 @@ USUAL: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class Meant:
-    """A derived formula in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
+    """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
     If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
     of the formula, such as "transposed".
@@ -113,15 +113,16 @@ class Meant:
 
     @property
     def identification(self) -> Identification:
-        """The derived formula as an entry of ``recognised_as`` in a verdict."""
+        """The known formula as an entry of ``recognised_as`` in a verdict."""
         return Identification(self.known.name.removesuffix(SQUARED), self.how, self.mapping, self.known.source)
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that names a quantity, in the context of the claim.
+    """Return the verdict, in its context, on a claim that gives a formula for a quantity.
 
-    ``verdict`` is "recognised", "doubtful" or "definition", by the derived formulas that fit the context. If symrot
-    does not use some words of the context, the claim is called neither true nor false, and a note lists these words.
+    ``verdict`` is "recognised", "doubtful" or "definition", by the known formulas that fit the context. If symrot
+    does not use some words of the context, the claim is called neither true nor false, and a note lists these
+    words.
     """
     verdict = _with_all_words(claim, named, verdict)
     sequence = claim.context.sequence
@@ -132,7 +133,7 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context, as far as all words of the context are understood and used."""
+    """Return the verdict on a claim in its context; it stays open if some words are not understood or not used."""
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
         return Verdict("definition", reason=reason)
@@ -156,9 +157,10 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
-    """Return the verdict, changed from "true" to "recognised" if phi and psi have the less usual order in a sequence.
+    """Replace "true" by "recognised" if the claim uses phi and psi in an unusual order that nothing states.
 
-    In ZYX psi is the first angle, and phi the third (yaw, pitch, roll); in every other sequence phi is the first.
+    In ZYX psi is usually the first angle, and phi the third (yaw, pitch, roll); in every other sequence phi is the
+    first.
     """
     angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
     if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
@@ -178,7 +180,7 @@ def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> V
 
 
 def _with_sides(verdict: Verdict) -> Verdict:
-    """Return the verdict, changed from "true" to "recognised" if a, b and c are not the sides along x, y and z."""
+    """Replace "true" by "recognised" if the verdict had to guess which of a, b and c is the side along which axis."""
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     if readings:
         return replace(verdict, recognised_as=tuple(readings))
@@ -187,7 +189,7 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict "recognised" in place of "true" if a tangent of a disk or ring is normal to its plane."""
+    """Replace "true" by "recognised" if "a tangent" of a disk or ring is taken to be normal to its plane."""
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
@@ -197,9 +199,10 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, changed from "true" to "recognised" if a letter such as I_1 stands for another axis.
+    """Replace "true" by "recognised" if a letter with an index, such as I_1, was assigned to another axis.
 
-    The words about a letter, or about the moments of the body, may say for which axis it stands.
+    Words about a letter, or about the moments of the body, may say for which axis it stands; then nothing is
+    replaced.
     """
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
@@ -215,7 +218,7 @@ def _with_axes(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _is_exchanged(known: Identification) -> bool:
-    """Return whether phi and psi are exchanged in the reading of a formula."""
+    """Return whether phi and psi of the known formula are exchanged in the claim."""
     return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
 
 
@@ -224,7 +227,7 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context, as if all of its words were used."""
+    """Return the verdict on a claim in its context, without regard to words that are not used."""
     context, quantity = claim.context, _name(named)
     stated = _stated_by_name(named)
     if verdict.verdict in ("recognised", "doubtful"):
@@ -263,7 +266,10 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the derived formulas that match a claim in the other frame or, if there are none, without its context."""
+    """Return the known formulas that match a claim if its context is changed.
+
+    The context is tried without the place, then with the other frame; if nothing matches, it is left out.
+    """
     context = claim.context
     if context.body and (context.place or context.body.axes):
         elsewhere = replace(context, body=replace(context.body, place="", axes=""))
@@ -279,7 +285,7 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict "recognised" with a note on the words of the likeliest formula that nothing states."""
+    """Return the verdict "recognised" with a note on the words of the likeliest formula's name that nothing states."""
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
@@ -287,12 +293,12 @@ def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
 
 
 def _name(named: NamedFormula) -> str:
-    """Return the name of the quantity; the name of its rate has a ``d`` in front."""
+    """Return the name of the quantity; the rate of a quantity has a ``d`` in front of the name."""
     return f"d{named.name}" if named.is_rate else named.name
 
 
 def _stated_by_name(named: NamedFormula) -> str:
-    """Return the words in names of formulas that the name of a quantity implies: "first component" for an index 1."""
+    """Return the words of formulas' names that a quantity's name implies: "first component" for the index 1."""
     words = list(words_of(named) or ())
     if re.fullmatch(r"[RACQ](_?\w+)?", named.name):
         words.append("rotation matrix")
@@ -303,23 +309,23 @@ def _stated_by_name(named: NamedFormula) -> str:
 
 
 def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict "true" with the conditions under which the formula has a value."""
+    """Return the verdict "true" with the conditions under which the claim's formula has a value."""
     conditions = _decided(claim, named.formula, named.formula).conditions
     return replace(verdict, verdict="true", conditions=tuple(map(as_text, conditions)))
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" with the point where a claim differs from the formula that is meant."""
+    """Return the verdict "false" with a point where the claim differs from the formula that is meant."""
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
 
 def _decided(claim: Claim, left: Node, right: Node) -> Decision:
-    """Return the decision on the equation of two trees in the letters of a claim."""
+    """Return the decision on the equation of two trees that use the names of a claim."""
     return decide_equation(claim.with_relation(("==", left, right), alternatives=()).equation)
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" if the formula of a claim differs from its repair, otherwise None."""
+    """Return the decision "false" if a claim's formula provably differs from its repair, otherwise None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -331,7 +337,7 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict that the derived formulas meant by the context imply; None if they do not decide the claim."""
+    """Return the verdict by comparison with all known formulas that the context can mean; None if it stays open."""
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -394,7 +400,7 @@ def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: s
 
 
 def _is_transposed(target: Any, value: Any) -> bool:
-    """Return whether the matrix ``value`` is square and provably the transpose of ``target``."""
+    """Return whether the square matrix ``value`` is provably the transpose of ``target``."""
     if not is_matrix(value) or value.rows != value.cols:
         return False
     decision = _equal(target.T, value)
@@ -402,7 +408,7 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether a decision is neither "true" nor "false": undecided, or true for some signs of symbols only.
+    """Return whether a decision leaves open that two formulas are equal: undecided, or true for some signs of symbols.
 
     Formulas that are equal for special values only, such as equal moments of inertia, are different formulas.
     """
@@ -414,7 +420,7 @@ def _is_open(decision: Decision) -> bool:
 def _different(
     claim: Claim, named: NamedFormula, verdict: Verdict, decisions: Sequence[tuple[Meant, Decision]]
 ) -> Verdict:
-    """Return the verdict "false" on a formula that differs from all the derived formulas that are meant."""
+    """Return the verdict "false" on a formula that differs from all known formulas that the context can mean."""
     (candidate, decision), *_ = decisions
     diagnosis, repairs = verdict.diagnosis, verdict.repairs
     is_solved = named.solve is None or named.solve(named.formula) == named.formula
@@ -435,7 +441,10 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Return the first repair towards each of several formulas, then the second ones, in all at most three."""
+    """Merge repairs towards several formulas: first the best one for each formula, then the second ones.
+
+    At most three are returned.
+    """
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 
@@ -453,7 +462,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault by which a claim's formula differs from a derived one, and repairs of the claim's formula."""
+    """Return the fault by which a claim's formula differs from a known one, and repairs of the claim's formula."""
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
@@ -471,12 +480,12 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key of repairs: those with one fault first, and short ones first."""
+    """Return a sort key that puts repairs with one fault first, then short ones."""
     return repair.code == "two_faults", len(repair.text)
 
 
 def _equal(target: Any, value: Any) -> Decision | None:
-    """Return the decision on ``value == target``; None if the equation cannot be decided."""
+    """Return the decision on the equation ``value == target``; None if it cannot be decided."""
     try:
         return decide_equation(Equation(value, target))
     except (InputError, TooLarge):
@@ -484,7 +493,7 @@ def _equal(target: Any, value: Any) -> Decision | None:
 
 
 def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
-    """Yield each derived formula for a quantity that fits a context, once for each assignment of its symbols.
+    """Yield each known formula for a quantity that fits a context, once for each assignment of its symbols.
 
     The symbols of the formula are replaced by symbols of ``value``, the formula of the claim.
     """
@@ -512,13 +521,13 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _root(square: Expr) -> Expr:
-    """Return the root of a square whose symbols are positive, such as masses and lengths."""
+    """Return the square root of a formula whose symbols are positive, such as masses and lengths."""
     positive = {symbol: Dummy(positive=True) for symbol in square.free_symbols}
     return sqrt(square.xreplace(positive)).xreplace({new: old for old, new in positive.items()})
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the symbols of angle rates that a reading does not use, each with the derivative that it means.
+    """Return the symbols of angle rates that an assignment does not use, each with the derivative that it means.
 
     The result is empty if the claim writes no derivatives.
     """
@@ -534,7 +543,7 @@ def _all_known() -> Iterator[Known]:
 
 
 def _with_letters(context: Context, target: Any) -> Any:
-    """Return a derived formula with the letters that the words about the body give its dimensions and moments."""
+    """Return a known formula with the letters that the context gives to the body's dimensions and moments."""
     if context.body is None:
         return target
     letters = dict(context.body.letters)
@@ -550,7 +559,7 @@ def _with_letters(context: Context, target: Any) -> Any:
 def _assignments(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield mappings from symbols of a derived formula to the atoms of a claim, by the letters that books use.
+    """Yield mappings from the symbols of a known formula to the symbols and rates of a claim, by the usage of books.
 
     If the formula ``is_specific`` (for one body or one sequence), the claim may lack some of its symbols.
     """
@@ -584,7 +593,7 @@ def _assignments(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can be a symbol of a derived formula."""
+    """Return whether a letter of a claim can stand for a symbol of a known formula."""
     if symbol in pinned or name in pinned:
         return name == symbol
     meaning = context.meaning_of(name)
@@ -598,7 +607,7 @@ def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
 
 
 def _distinct(choices: Sequence[Sequence[Expr]]) -> Iterator[tuple[Expr, ...]]:
-    """Yield tuples of one member of each choice, with no member twice."""
+    """Yield tuples with one member of each list in ``choices``, in which no member occurs twice."""
     if not choices:
         yield ()
         return

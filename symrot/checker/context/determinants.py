@@ -1,7 +1,7 @@
 """Claims about the determinant of a rate Jacobian: ``det T = -sin(theta)``, which says where the angles are singular.
 
 The determinant depends on the second angle alone, in the body frame and in the space frame. Its sign depends on the
-order in which the angles are listed, which such a claim does not say: either sign is recognised.
+order in which the angles are listed, which the claim does not state: either sign is recognised.
 """
 
 import re
@@ -48,7 +48,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 def determinants() -> dict[str, Expr]:
     """Return the determinant of the rate Jacobian of each sequence, the usual sequences first.
 
-    The first and last angle are zero, since the determinant does not depend on them.
+    The first and last angle are set to zero, since the determinant does not depend on them.
 
     Examples
     --------
@@ -60,10 +60,10 @@ def determinants() -> dict[str, Expr]:
 
 
 def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
-    """Return the verdict on ``det T = f(theta)``, in which nothing but the name says what T is; None for other claims.
+    """Return the verdict on a claim ``det T = f(theta)`` in which nothing defines T; None for other claims.
 
-    It is "recognised" if f is the determinant of the rate Jacobian of a sequence, of the sequence that is stated if
-    there is one, and "doubtful" if one edit makes f such a determinant.
+    It is "recognised" if f is the determinant of a sequence's rate Jacobian (of the stated sequence, if one is
+    stated), and "doubtful" if one edit makes f such a determinant.
     """
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
@@ -79,14 +79,14 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
 
 
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
-    """Return whether a tree is the determinant of a matrix that may be a rate Jacobian."""
+    """Return whether a tree is the determinant of a matrix whose name may mean a rate Jacobian."""
     return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
         str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
     )  # fmt: skip
 
 
 def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
-    """Return the determinants to which a formula is equal up to its sign, those of the usual sequences first."""
+    """Return the rate Jacobians whose determinant equals a formula up to sign, those of the usual sequences first."""
     try:
         value = claim.interpreter().read(formula)
     except InputError:
@@ -116,7 +116,7 @@ def _is_equal(first: Expr, second: Expr) -> bool:
 
 
 def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit of a formula makes it a determinant; otherwise None."""
+    """Return the verdict "doubtful" if one edit makes a formula the determinant of a rate Jacobian; otherwise None."""
     numeric = NumericFilter(claim)
     edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
     repairs: dict[str, Repair] = {}

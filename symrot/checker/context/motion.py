@@ -1,10 +1,17 @@
-"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations of each subject."""
+"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations that hold there."""
+
+from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.angle_rates import substitutions_of_rates
 from symrot.checker.context.axis_angles import is_stated, substitutions_of_axis_angles
-from symrot.checker.context.body_integrals import substitutions_of_gyration, substitutions_of_integrals
+from symrot.checker.context.body_integrals import (
+    TENSOR_OF_INTEGRALS,
+    is_tensor_of_integrals,
+    substitutions_of_gyration,
+    substitutions_of_integrals,
+)
 from symrot.checker.context.substitution import by_substitution
 from symrot.checker.context.tops import substitutions_of_tops
 from symrot.checker.verdict import Verdict
@@ -13,13 +20,15 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the relations between rates, components, momenta and energies.
+    """Return the verdict that the relations between rates, components, momenta and energies imply for a claim.
 
     It is ``verdict`` if these relations do not decide the claim.
     """
     equation, context = claim.equation, claim.context
     sides = equation.left, equation.right
     if any(map(is_matrix, sides)):
+        if verdict.verdict == "definition" and is_tensor_of_integrals(sides):
+            return replace(verdict, verdict="recognised", recognised_as=(TENSOR_OF_INTEGRALS,), reason="")
         return verdict
     is_used = not context.rest  # with words that nothing uses, a claim is called neither true nor false
     of_gyration = is_used and any(meaning.quantity.title == "radius of gyration" for meaning in context.meanings)

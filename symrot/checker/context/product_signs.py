@@ -1,7 +1,6 @@
-"""Claims whose words define products of inertia without the minus sign, judged with the sign that symrot uses.
+"""Claims whose context defines products of inertia without the minus sign; symrot's formulas have it.
 
-``I_xy`` without the minus sign is ``-I_xy`` with it, so that the claim with the signs of all products changed says the
-same in the convention of symrot.
+``I_xy`` without the minus sign is ``-I_xy`` with it. So the claim is judged after changing the sign of every product.
 """
 
 from dataclasses import replace
@@ -9,19 +8,43 @@ from dataclasses import replace
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node, negated, text
+from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
-__all__ = ["in_claim", "with_minus_sign"]
+__all__ = ["in_claim", "sign_by_integral", "with_minus_sign", "with_sign"]
 
 NOTE = "products of inertia are those without the minus sign, I_xy = integral of x*y dm"
-WITH_MINUS = next(quantity for quantity in QUANTITIES if quantity.sign == "minus")
+WITH_MINUS, WITHOUT_MINUS = (
+    next(quantity for quantity in QUANTITIES if quantity.sign == sign) for sign in ("minus", "plus")
+)
+COORDINATES = ("x", "y", "z")
+
+
+def sign_by_integral(name: Node, formula: Node) -> str:
+    """Return "plus" for ``I_xy = integral of x*y dm``, "minus" for its negative, and "" for any other definition."""
+    integral = formula.args[0] if formula.kind == "neg" else formula
+    if not _is_product(name) or integral.kind != "call" or integral.value != "integral_over_body":
+        return ""
+    inside, negative = integral.args[0], formula.kind == "neg"
+    if inside.kind == "neg":
+        inside, negative = inside.args[0], not negative
+    factors = [str(factor.value) for factor in inside.args] if inside.kind == "product" else []
+    is_pair = len({*factors}) == len(factors) == 2 and {*factors} <= {*COORDINATES}
+    return ("minus" if negative else "plus") if is_pair and sorted(factors) == sorted(str(name.value)[-2:]) else ""
+
+
+def with_sign(context: Context, name: Node, sign: str) -> Context:
+    """Return a context in which a definition by an integral states the sign of products of inertia."""
+    quantity = WITH_MINUS if sign == "minus" else WITHOUT_MINUS
+    meaning = Meaning((str(name.value),), quantity, written=(str(name.value),))
+    return replace(context, meanings=(*context.meanings, meaning))
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return the claim that says the same about products of inertia with the minus sign."""
+    """Return an equivalent claim in which products of inertia are defined with the minus sign."""
     if claim.relation is None:
         return claim
     meanings = tuple(
@@ -33,7 +56,7 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Turn a verdict on the claim with changed signs into one on the claim itself; a note says so."""
+    """Turn the verdict on the claim with changed signs into the verdict on the original claim; a note says so."""
     repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
     return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
 
@@ -47,7 +70,7 @@ def _restored(repair: Repair) -> Repair | None:
 
 
 def _changed(relation: tuple[str, Node, Node]) -> tuple[str, Node, Node]:
-    """Return an equation with the other sign of each product of inertia, solved for the same quantity."""
+    """Return an equation with the opposite sign of each product of inertia, solved for the same quantity."""
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
     if any(map(_is_product, sides)):
@@ -60,7 +83,7 @@ def _negative(tree: Node) -> Node:
 
 
 def _is_product(tree: Node) -> bool:
-    """Return whether a tree is a product of inertia, by its name, as a function of time, or the rate of one."""
+    """Return whether a tree is a product of inertia by its name: the name, a function of time, or a rate."""
     if tree.kind == "call" and tree.value == "diff":
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]

@@ -1,6 +1,6 @@
-"""The quantities that words such as "moment of inertia about the centre" name, with their synonyms.
+"""The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-Words in the names of derived formulas, and patterns of symbols, tell which formulas and symbols are for a quantity.
+For each quantity, words in the names of known formulas, and a pattern of symbols, tell which formulas are for it.
 """
 
 import re
@@ -16,7 +16,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of mechanics.
+    """A quantity of mechanics, such as the moment of inertia.
 
     Attributes
     ----------
@@ -25,12 +25,12 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases; the name of each derived formula for the quantity contains one of them.
+        Phrases, one of which is in the name of each derived formula for the quantity.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
     sign : str
-        "minus" or "plus" for a product of inertia that is stated to be defined with or without the minus sign.
+        "minus" or "plus" for a product of inertia whose words say that it is defined with or without the minus sign.
     """
 
     title: str
@@ -42,7 +42,7 @@ class Quantity:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """The title and the synonyms as plain words."""
+        """The title and the synonyms in lower case and in one spelling."""
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 
@@ -239,7 +239,7 @@ _SPELLINGS = (
 
 
 def plain_words(text: str) -> str:
-    """Return words in lower case with one spelling each, without articles, and with single blanks.
+    """Return words in lower case and in one spelling, without articles, with single blanks.
 
     Examples
     --------
@@ -256,9 +256,10 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the title of the place of an axis in plain words, or an empty text, and the words without it.
+    """Find the place of an axis in words; return its title, or an empty text, and the remaining words.
 
-    ``formulas`` are the phrases for the body in the names of formulas; a line that the body does not have is no place.
+    ``formulas`` are the phrases for the body in the names of formulas; a line that the body does not have is no
+    place.
 
     Examples
     --------
@@ -286,7 +287,7 @@ _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|al
 
 
 def unused_words(words: str) -> str:
-    """Return the words of a text that carry meaning, without articles and the like; often the result is empty.
+    """Return the words of a text that carry meaning, without articles, prepositions and the like; often none are left.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Moments of inertia whose letters are half the sides of a box, the axes of an ellipsoid, or a diameter.
+"""Moments of inertia in other dimensions: half the sides of a box, the axes of an ellipsoid, or a diameter.
 
 symrot writes the moments of a box with its sides, those of an ellipsoid with its semi-axes, those of round bodies with
-their radii. Authors also use the other letters; a formula that is exact for these is recognised, and the note says so.
+their radii. Authors also use other dimensions. A formula that is exact for these is recognised, and a note says so.
 """
 
 from collections.abc import Callable
@@ -20,9 +20,9 @@ __all__ = ["by_other_sizes"]
 
 @dataclass(frozen=True)
 class Size:
-    """Letters with which authors write the moments of some bodies.
+    """Another choice of dimensions than symrot's, such as diameters, with its letters and the bodies it is used for.
 
-    ``factor`` is the dimension of symrot in units of the letter, ``letters`` gives its letter in symrot for each.
+    ``letters`` maps them to symrot's letters, and ``factor`` is symrot's dimension divided by the author's.
     """
 
     letters: dict[str, str]
@@ -45,7 +45,7 @@ Judge = Callable[[Claim, NamedFormula], Verdict]
 
 
 def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return the verdict "recognised" on a moment of inertia that is exact with other dimensions, or ``verdict``.
+    """Return the verdict "recognised" on a moment of inertia that is exact with other dimensions; else ``verdict``.
 
     Nothing is tried if the words about the body say what its letters are.
     """
@@ -73,7 +73,7 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
 
 
 def _in_dimensions(tree: Node, size: Size) -> Node:
-    """Return a formula in which the dimensions that symrot uses, such as the radius, replace those of the author."""
+    """Return a formula in which symrot's dimensions, such as the radius, replace the author's."""
     if tree.kind == "name" and tree.value in size.letters:
         return product([number(1 / size.factor), Node("name", size.letters[str(tree.value)])])
     return replace(tree, args=tuple(_in_dimensions(child, size) for child in tree.args))

@@ -1,7 +1,7 @@
-"""Claims decided by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
+"""Deciding claims by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
 
-Whatever a claim is solved for, it is true on the relations that these formulas state if and only if the rest is an
-identity.
+Whatever quantity a claim is solved for, it follows from these formulas if and only if the result of the substitution is
+an identity.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,18 +31,18 @@ GUESSED = "guessed, not stated"
 
 @dataclass(frozen=True)
 class Substitution:
-    """One way of reading the letters of a claim.
+    """One way to read the letters of a claim, with the formulas to substitute for them.
 
     Attributes
     ----------
     name, source : str
-        The relation, and where symrot derives it.
+        The name of the relation that the formulas state, and where symrot derives it.
     values : dict
-        Atom of the claim -> its formula in the coordinates of the motion.
+        Symbol or rate of the claim -> its formula in the coordinates of the motion.
     guess : str
-        What nothing states; empty if everything is stated.
+        The parts of this reading that nothing states; empty if everything is stated.
     sides : tuple (Expr, Expr) or None
-        An equation that takes the place of the claim's; None for the claim's own.
+        An equation to decide in place of the claim's equation, if not None.
     mapping : dict
         Symbol of the relation -> letter of the claim, where they differ.
     """
@@ -69,13 +69,13 @@ def decided(equation: Equation, substitution: Substitution) -> Decision | None:
 
 
 def may_be_true(equation: Equation, substitution: Substitution) -> bool:
-    """Return whether the sides of an equation after a substitution have nearly equal values at some points."""
+    """Return whether the two sides of an equation, after a substitution, are nearly equal at some points."""
     left, right = _sides(equation, substitution)
     return seems_zero(left - right)
 
 
 def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
-    """Return the sides of an equation after a substitution."""
+    """Return the two sides of an equation after a substitution."""
     left, right = substitution.sides or (equation.left, equation.right)
     return left.xreplace(substitution.values), right.xreplace(substitution.values)
 
@@ -83,10 +83,10 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict on a claim by the ways of reading it, or ``verdict`` if these say nothing new.
+    """Return the verdict that follows from the possible ways to read a claim, or ``verdict`` if they add nothing.
 
-    The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that it leaves no
-    other way, the claim is false if it is false in all of them.
+    The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that there is
+    no other way, the claim is false if it is false in all of them.
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict
@@ -111,7 +111,7 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return the verdict "true" if everything is stated, otherwise "recognised" with a note on what is guessed."""
+    """Return the verdict "true" if everything is stated, otherwise "recognised" with a note on what was guessed."""
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])
     if stated and context and is_complete:

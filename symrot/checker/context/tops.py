@@ -54,10 +54,10 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways of reading a claim as one about a symmetric top.
+    """Yield the ways to read a claim as one about a symmetric top.
 
-    There is none if the claim has a letter that a top does not have, no moment of inertia, or no quantity that is a
-    formula in the others; and none for another body.
+    There is none if the claim has a letter that means nothing for a top, no moment of inertia, or only independent
+    quantities, nor if the context names another body.
     """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
@@ -84,7 +84,7 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether two letters do not mean the same, and the claim is certainly one about a top."""
+    """Return whether one reading of the letters makes sense: no two mean the same, and a top is clearly meant."""
     letters: dict[Expr, str] = {}
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
     moments = {A, C} & {*values.values()}
@@ -95,7 +95,7 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
 
 
 def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
-    """Yield (title, formula) for each quantity of a top that a letter can be; the title of a coordinate is empty."""
+    """Yield (title, formula) for each quantity of a top that a letter can mean; a coordinate has an empty title."""
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
     for letters, symbol in COORDINATES:
@@ -144,7 +144,7 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession with the formula of a claim in place of the rate of precession."""
+    """Yield the condition of steady precession, with the claim's formula substituted for the rate of precession."""
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
             continue

@@ -1,1 +1,1 @@
-"""The decision on a claim: its stages, with hypotheses, conditions and real points."""
+"""The decision whether a claim is true: its stages, hypotheses, conditions, and real points as counterexamples."""

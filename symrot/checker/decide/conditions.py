@@ -1,4 +1,4 @@
-"""Conditions under which a false claim is true: a unit norm, equal moments, no products of inertia, the sign of a root.
+"""Conditions under which a false claim becomes true: a unit norm, equal moments, no products of inertia, a root's sign.
 
 A condition is a common factor of all residuals (the left minus the right sides of the entries): where it is zero, the
 claim is true. Only conditions that textbooks state count, since every false claim is "true" where its residual happens
@@ -34,7 +34,7 @@ MOST_TERMS, LARGEST_DEGREE = 400, 24
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return conditions, of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
+    """Return conditions of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
 
     Parameters
     ----------
@@ -69,11 +69,11 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
-    """Return whether one side of each wrong entry lacks one of the symbols of a condition such as ``A = B``.
+    """Return whether the author of a false claim may have assumed a condition, such as ``A = B``, without stating it.
 
-    An author who silently assumes ``A = B`` writes only one of the two. A text with both, such as ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way, and so is a text that has both on one side and neither on the other. If a
-    hypothesis relates a symbol to the symbols of a side, the side counts as having it.
+    An author who silently assumes ``A = B`` writes only one of the two letters on a side. A text with both, such as
+    ``(A - B) w`` against ``(B - A) w``, is wrong in another way, and so is a text that has both on one side and
+    neither on the other. If a hypothesis relates a symbol to the symbols of a side, the side counts as having it.
     """
     (formula,) = requirement.zeros
     symbols = formula.free_symbols
@@ -94,7 +94,7 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 
 
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
-    """Return the condition ``factor = 0`` if it is of a kind that textbooks state, else None."""
+    """Return the condition ``factor = 0`` if textbooks state conditions of its kind, else None."""
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
     if not all(n in leaves and (leaves[n].is_Symbol or isinstance(leaves[n], AppliedUndef)) for n in places):
@@ -113,7 +113,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` that a factor states; None for a sum of moments.
+    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` if the factor states one; None for a sum of moments.
 
     A sum of moments of inertia is positive: it cannot be zero.
     """
@@ -140,7 +140,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia are zero if it makes the claim true; else an empty list."""
+    """Return the condition that all products of inertia are zero, if it makes the claim true; else an empty list."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -160,10 +160,10 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
-    Let the residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
+    Let a residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
     ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
-    zero too, and the claim holds, so that the text leaves out ``b != 0``. The list is empty if ``-a/b >= 0`` holds
-    wherever the claim is defined.
+    zero too, and the claim holds; so the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0``
+    holds wherever the claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -186,6 +186,6 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return (a, b) with poly = a + b*generator."""
+    """Return polynomials (a, b) with poly = a + b*generator."""
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero

@@ -1,9 +1,9 @@
-"""The real points for which a claim is decided, as polynomials in the generators (the unknowns) of its ring.
+"""The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
-Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the relations of roots. Divisors
-do not vanish. Symbols and even roots have signs. A generator is ``free`` if these polynomials say everything that is
-known of its value; a function of a symbol is not free, nor is an angle that depends on a symbol. Constraints on
-generators that are not free are not used.
+Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the equation ``root^n = base``
+of each root. Divisors do not vanish. Symbols and even roots have signs. A generator is ``free`` if these polynomials
+say everything that is known of its value; a function of a symbol is not free, nor is an angle that depends on a symbol.
+Constraints on generators that are not free are not used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,17 +34,17 @@ class Constraints:
         A ring over the rationals with the generators of the claim's ring.
     zeros, nonzero : tuple of PolyElement
     positive, nonnegative, negative, whole : frozenset of int
-        Generators > 0, >= 0, < 0, and integer.
+        Numbers of the generators that are assumed to be > 0, >= 0, < 0, or integers.
     products : tuple of PolyElement
         Further polynomials that are >= 0: a root times the divisor under it, radicands of the text.
     free : frozenset of int
         Generators that may have any value that these polynomials and signs allow.
     unconstrained : tuple of PolyElement
-        Divisors in which a generator is not free. Points are drawn without regard to them.
+        Divisors with a generator that is not free. The drawing of points ignores them.
     complete : bool
-        False if a hypothesis involves a generator that is not free, so that ``zeros`` leave something out.
+        False if a hypothesis involves a generator that is not free, and is therefore missing in ``zeros``.
     real : bool
-        False if i occurs.
+        False if the imaginary unit occurs.
     """
 
     ring: PolyRing
@@ -72,7 +72,7 @@ def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
 
 
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
-    """Return the different factors of a polynomial that is not constant, each monic.
+    """Return the different factors of a polynomial that is not constant, each with leading coefficient 1.
 
     A large polynomial is not factored; only unknowns that divide every term are split off.
     """
@@ -86,7 +86,7 @@ def distinct_factors(poly: PolyElement) -> list[PolyElement]:
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:
-    """Return the constraints that a ring contains, including all divisors that have been read into it so far."""
+    """Return the constraints in a ring of formulas, including all divisors that have been read into the ring so far."""
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
     free = {*symbols.values(), *_free_angles(ring)}

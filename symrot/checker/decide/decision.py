@@ -1,7 +1,7 @@
-"""The decision on a claim: the stages of :mod:`symrot.exact.decision`, and stages of its own.
+"""The decision on a claim: the stages of :mod:`symrot.exact.decision`, and further stages that only claims need.
 
-A claim may have hypotheses, and its text may have divisors and roots that SymPy has cancelled. Further stages use the
-hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
+A claim may have hypotheses, and its text may have divisors and roots that SymPy has cancelled. The further stages use
+the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
 (:mod:`symrot.checker.decide.conditions`).
 """
 
@@ -20,7 +20,7 @@ from symrot.checker.decide.conditions import branch_requirements, requirements
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.hypotheses import Hypotheses
 from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
-from symrot.checker.decide.ranges import condition_texts, follow, range_text, with_domain
+from symrot.checker.decide.ranges import condition_texts, follow, positive_symbols, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError
@@ -66,7 +66,7 @@ MOST_ON_THE_CUT = 4
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation with its hypotheses.
+    """An equation to be decided, with its hypotheses and with the divisors and roots that its text has.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Equation:
     radicands : tuple of Expr
         Formulas of which the text takes even roots.
     bases : tuple of Expr
-        Bases of powers whose exponents are not numbers; such powers are read for positive bases.
+        Bases of powers whose exponents are not numbers; these bases are assumed to be positive.
     """
 
     left: Any
@@ -93,7 +93,7 @@ class Equation:
 
 
 def is_large(equation: Equation) -> bool:
-    """Return whether a side of an equation is too large to be expanded, so that no repair can be found."""
+    """Return whether a side of an equation is too large to be expanded; then no repairs are sought either."""
     return degree_of([*flatten(equation.left)[0], *flatten(equation.right)[0]]) > LARGEST_DEGREE
 
 
@@ -109,6 +109,8 @@ def decide_equation(equation: Equation) -> Decision:
     try:
         with one_decision():
             decision = _decide(equation)
+            if decision.verdict == "undecided":
+                decision = _with_positive_symbols(equation, decision)
         return _without_needless(decision, equation) if decision.verdict == "conditional" else decision
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
@@ -118,8 +120,32 @@ def decide_equation(equation: Equation) -> Decision:
         raise
 
 
+def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
+    """Return "true" for an open equation that is proven with the signs that its conditions give to its symbols.
+
+    Otherwise return the given decision. ``abs(x)`` is x in ``asech(x) == acosh(1/x)``, whose left side needs x > 0.
+    """
+    known = positive_symbols(decision.conditions)
+    if not known or equation.hypotheses:
+        return decision
+    left, right = (side.xreplace(known) for side in (equation.left, equation.right))
+    divisors, nonzero, radicands = (
+        tuple(formula.xreplace(known) for formula in formulas)
+        for formulas in (equation.divisors, equation.nonzero, equation.radicands)
+    )
+    try:
+        signed = _decide(Equation(left, right, (), divisors, nonzero, radicands))
+    except InputError:  # the signs exclude all points
+        return decision
+    if signed.verdict != "true":
+        return decision
+    symbols = {other: symbol for symbol, other in known.items()}
+    conditions = [condition.xreplace(symbols) for condition in signed.conditions]
+    return replace(signed, conditions=tuple(dict.fromkeys([*decision.conditions, *conditions])))
+
+
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision without the divisors of its conditions at whose zeros the sides are defined and equal.
+    """Return a decision whose conditions do not exclude points at which the equation is true.
 
     The proof of ``sqrt(x**2*y**2) == x*y`` divides by ``abs(y)``, but the equation is true for ``y = 0`` too.
     """
@@ -127,7 +153,7 @@ def _without_needless(decision: Decision, equation: Equation) -> Decision:
 
 
 def _without_divisor(condition: Any, equation: Equation) -> Any:
-    """Return the condition of a sign without its divisor, if the equation is true where the divisor is zero."""
+    """Return a condition on a sign without its divisor, if the equation is true where the divisor is zero."""
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
     signs = []
@@ -139,7 +165,10 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 
 
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
-    """Return whether an equation is true where a formula is zero; False for one with more symbols or other zeros."""
+    """Return whether an equation is true at each zero of a formula.
+
+    Also return False if the formula has several symbols, is no polynomial, or has an irrational zero.
+    """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
         return False
@@ -148,7 +177,7 @@ def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
 
 
 def _is_true_at(point: dict[Expr, Expr], equation: Equation) -> bool:
-    """Return whether both sides of an equation are defined and equal where some symbols have values."""
+    """Return whether both sides of an equation are defined and equal at a point."""
     divisors, radicands = (
         tuple(formula.subs(point) for formula in formulas) for formulas in (equation.divisors, equation.radicands)
     )
@@ -196,15 +225,15 @@ def _decide(equation: Equation) -> Decision:
 
 @dataclass
 class _ClaimCase(Case):
-    """The state of the decision on a claim: its equation, and the evidence found so far.
+    """The state of a running decision on a claim: the equation and the evidence so far.
 
     Attributes
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Numbers of the factors in the ring that hypotheses state to be nonzero.
+        Numbers of those factors in the ring which, by a hypothesis, are not zero.
     numerators : list of PolyElement
-        The reduced numerators of the unproven entries.
+        The numerators of left - right for the unproven entries, reduced by the hypotheses.
     branches : list of Requirement or None
         Conditions on signs under which the claim is true; empty if none is needed, None if none is known.
     """
@@ -216,19 +245,22 @@ class _ClaimCase(Case):
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """The hypotheses, with the conditions for both sides to be real numbers.
+        """The hypotheses, with the conditions under which both sides are real numbers.
 
-        Their constraints include the divisors that were read before this property is first used.
+        They include the divisors that were read into the ring before this property is first used.
         """
         return Hypotheses(self.ring, _needs(self))
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether nothing decides the claim: no counterexample, and no condition that suffices without hypotheses."""
+        """Whether the stages so far leave the claim open.
+
+        They do if no counterexample is known, and there are hypotheses or no condition on signs suffices.
+        """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
-        """Return a search for points that skips the points where a side, as it is written, has no value.
+        """Return a search for counterexamples that drops points at which a side, as it is written, has no value.
 
         An example is a point where a divisor that SymPy has cancelled is zero.
         """
@@ -243,7 +275,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of a proof in alphabetical order, without conditions that are hypotheses."""
+        """Return the conditions that a proof needs, in alphabetical order, without those that are hypotheses."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -269,7 +301,7 @@ class _ClaimCase(Case):
         return Decision("undecided", self.conditions, reason=reason)
 
     def can_hold(self, requirement: Requirement) -> bool:
-        """Return whether a point is known at which a requirement holds and the sides are real numbers."""
+        """Return whether a point is known at which a condition holds and the sides are real numbers."""
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
         if not self.hypotheses.consistent_with(requirement.zeros):
             return False
@@ -280,21 +312,24 @@ class _ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
-    """Read the formulas that hypotheses state to be nonzero, before any other divisor is read."""
+    """Read the formulas that are nonzero by a hypothesis into the ring, before any other divisor is read."""
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
     case.nonzero_factors = set(range(len(case.ring.ratios.factors)))
 
 
 def domain_of_text(case: _ClaimCase) -> None:
-    """Add the divisors of the text to the ring. Raise InputError if the sides of the claim are real numbers nowhere."""
+    """Add the divisors of the text to the ring.
+
+    Raise InputError if there is no point where both sides are real numbers.
+    """
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
     case.hypotheses.refuse_if_nowhere()
 
 
 def nearby_witness(case: _ClaimCase) -> None:
-    """Store a counterexample in ``case``, from rational points or from a few points that obey the hypotheses."""
+    """Search rational points, or a few points that obey the hypotheses, for a counterexample; store it in ``case``."""
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
     closed_form = hypotheses.checked(closed_form_witness)
@@ -303,9 +338,9 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Return "true" for a claim that needs one sign of a root, or one branch of a function such as asin, and has it.
+    """Return "true" for a claim that needs a certain sign of a root, or branch of asin, which its domain implies.
 
-    The domain of the claim must allow no other sign or branch. Return None for any other claim.
+    Return None for any other claim.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -318,7 +353,7 @@ def branch(case: _ClaimCase) -> Decision | None:
 
 
 def entail(case: _ClaimCase) -> Decision | None:
-    """Return the decision on a claim that follows from its hypotheses, or None; refuse hypotheses that hold nowhere."""
+    """Return "true" for a claim that follows from its hypotheses, else None. Refuse hypotheses that hold nowhere."""
     if not case.lacks_evidence:
         return None
     if case.hypotheses.entails(case.numerators):
@@ -328,7 +363,7 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Store a counterexample in ``case``, from all points that can be drawn and obey the hypotheses."""
+    """Search all points that can be drawn and obey the hypotheses for a counterexample; store it in ``case``."""
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
@@ -336,7 +371,7 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Return "conditional" for a claim that is true under a condition that authors often omit, or None."""
+    """Return "conditional" for a claim that is true under a condition that authors often omit; otherwise None."""
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
@@ -354,7 +389,7 @@ def condition(case: _ClaimCase) -> Decision | None:
 
 
 def leave_open(case: _ClaimCase) -> Decision:
-    """Return the decision "undecided" on the claim, with the reason."""
+    """Return the decision "undecided" with the reason why no stage decided the claim."""
     return Decision("undecided", case.conditions, reason=_obstacle(case.ring))
 
 
@@ -365,7 +400,7 @@ STAGES = (
 
 
 def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision that is conditional if it is true and powers are read for positive bases of unknown sign.
+    """Make a true decision conditional if it assumes that the base of a power with a symbolic exponent is positive.
 
     ``a**b`` may have a value for a negative a too, if b is a whole number; nothing is proven about that.
     """
@@ -373,6 +408,8 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
     if not bases or decision.verdict != "true":
         return decision
     text = range_text([(base, "> 0") for base in bases])
+    if not text:  # each base is proven to be positive
+        return decision
     required = Requirement("positive_base", text, signs=tuple(bases), strict=tuple(bases))
     return replace(decision, verdict="conditional", requires=(required,), conditions=(required, *decision.conditions))
 
@@ -381,10 +418,11 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Return a decision that is conditional if the sides differ at a point that its conditions exclude.
+    """Make a decision conditional if the sides differ at a point that the conditions of its proof exclude.
 
-    All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the proof
-    vanishes are equal in between too. atan2 jumps where its first argument is zero and its second argument is negative.
+    All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the
+    proof vanishes are equal in between too. atan2 jumps where its first argument is zero and its second argument is
+    negative.
     """
     symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
     cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
@@ -404,9 +442,9 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield simple points, and points on the cuts of atan2, where its first argument is zero.
+    """Yield points with simple coordinates, and points on the cuts of atan2, where its first argument is zero.
 
-    Points on a cut are known only if the argument is linear in a symbol.
+    A point on a cut is found only if the argument is linear in a symbol.
     """
     for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
         point = dict(zip(symbols, map(Rational, values), strict=True))
@@ -432,7 +470,10 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
-    """Return the conditions for sides and hypotheses to be real numbers, also for parts that SymPy has cancelled."""
+    """Return the conditions under which sides and hypotheses are real numbers, as their text has them.
+
+    The text may have divisors and roots that SymPy has cancelled.
+    """
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
     stated = _stated_needs(equation)
@@ -440,7 +481,7 @@ def _needs(case: _ClaimCase) -> list[Need]:
 
 
 def _stated_needs(equation: Equation) -> list[Need]:
-    """Return the needs of the divisors and radicands in the text of a claim."""
+    """Return the conditions that divisors in a claim's text are nonzero, and formulas under its roots nonnegative."""
     stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
     divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is recorded as both
     return [
@@ -450,12 +491,12 @@ def _stated_needs(equation: Equation) -> list[Need]:
 
 
 def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr], size: int) -> Decision:
-    """Return the decision on an equation whose powers are too large to be expanded.
+    """Return the decision on an equation with powers that are too large to be expanded.
 
     Raises
     ------
     InputError
-        If it is neither proven with letters for the powers nor refuted.
+        If it can neither be proven with letters in place of the powers, nor refuted at a point.
     """
     refusal = InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
     if equation.hypotheses or len(lefts) > 1:
@@ -485,7 +526,7 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must be nonzero, by text, without formulas that never vanish or are powers of others.
+    """Return, by text, the formulas that must be nonzero, without those that never vanish or are powers of others.
 
     ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
     """
@@ -503,7 +544,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the formula with the shorter text, or one that has far fewer parts than the other."""
+    """Return the one of two formulas that has the shorter text; if one has far fewer parts, return that one."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few
@@ -517,7 +558,7 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return conditions on signs under which the residuals (left - right) vanish, and the ring in which this is proven.
+    """Return the signs that make the residuals (left - right) vanish, and the rings in which this is proven.
 
     The list is empty if no condition is needed; it is None if no such condition is known.
     """
@@ -541,14 +582,17 @@ def _branches(
 
 
 def _obstacle(ring: FormulaRing) -> str:
-    """Return a sentence that says why a claim could not be decided."""
+    """Return a sentence with the reason why a claim could not be decided."""
     if ring.outside_scope:
         named = ring.outside_scope[:3]
         terms = ", ".join(f"functions of {as_text(term)}" if term.is_Rational else as_text(term) for term in named)
         return f"too little is known here about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])
-        return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
+        return (
+            f"whether the sides are equal depends on the sign of {roots}, "
+            "and no point was found where they provably differ"
+        )
     if ring.hypotheses:
-        return f"none of {ATTEMPTS} points drawn obeys the hypotheses and shows a difference; no proof was found either"
+        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference; nor was a proof found"
     return "no rational point was found at which the sides differ, since an angle depends on other symbols"

@@ -10,9 +10,9 @@ MOST_TERMS_OF_SQUARE = 40
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula, such as a sum of squares, shows that it is never negative.
+    """Return whether the form of a real formula shows that it is never negative, as that of a sum of squares does.
 
-    Its square roots are taken to be real.
+    Its square roots are assumed to be real.
     """
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True

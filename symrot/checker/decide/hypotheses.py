@@ -1,4 +1,4 @@
-"""The hypotheses of a claim: a point where they hold, the claims that follow from them, counterexamples that obey them.
+"""The hypotheses of a claim: points where they hold, and whether they imply the claim or can hold at all.
 
 A claim under hypotheses that hold nowhere, or about sides that are defined nowhere, says nothing. It is refused if that
 can be proven. It is undecided if no point is known at which the sides are real numbers and the hypotheses hold
@@ -45,12 +45,12 @@ OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1)
 
 
 class Hypotheses:
-    """The hypotheses of one claim, with methods that find points where they hold or prove that there are none.
+    """The hypotheses of one claim, with methods that find points where they hold or prove that there is none.
 
     Parameters
     ----------
     ring : FormulaRing
-        The ring of the case, with all divisors of the claim.
+        The ring of the claim's formulas, with all divisors of the claim.
     needs : sequence of Need
         Conditions under which sides and hypotheses, as they are written, are real numbers.
     """
@@ -61,12 +61,12 @@ class Hypotheses:
 
     @cached_property
     def constraints(self) -> Constraints:
-        """Hypotheses and assumptions on symbols as polynomials."""
+        """The hypotheses, and the assumed signs of symbols, as polynomial constraints."""
         return constraints_of(self.ring)
 
     @cached_property
     def present(self) -> bool:
-        """Whether there are any hypotheses, or symbols that are assumed to have a sign or to be integers."""
+        """Whether there are hypotheses, or symbols that are assumed to have a sign or to be integers."""
         signs = self.constraints
         return bool(self.ring.hypotheses or signs.positive or signs.negative or signs.nonnegative or signs.whole)
 
@@ -75,9 +75,9 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield the points, among the first ``attempts`` that are drawn at random, that obey all constraints.
+        """Yield points that obey all constraints, from ``attempts`` random drawings; a drawing may fail.
 
-        A point is drawn once and stored.
+        Each point is drawn once and stored.
         """
         number = 0
         while number < attempts:
@@ -96,7 +96,7 @@ class Hypotheses:
         Parameters
         ----------
         further : sequence of Need
-            Needs besides those of the claim: nonzero divisors of a proof, the sign that a condition states.
+            Further conditions on the point: nonzero divisors of a proof, the sign that a condition states.
         zeros : sequence of Expr
             Formulas of a condition that must vanish too.
 
@@ -120,7 +120,7 @@ class Hypotheses:
         return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
 
     def _refuse_if_excluded(self) -> None:
-        """Raise InputError if the hypotheses make a divisor the number zero, or a radicand a negative number."""
+        """Raise InputError if the hypotheses make a divisor zero, or the formula under a root a negative number."""
         for need in self.needs if self.ring.hypotheses else ():
             try:
                 reduced = normal_form(need.formula, self.ring.hypotheses)
@@ -143,7 +143,7 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether :func:`is_dense` shows that points at which all ``needs`` are met exist near every point."""
+        """Return whether points that meet all ``needs`` exist near every point, which :func:`is_dense` can prove."""
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
@@ -158,7 +158,7 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether an exact point is found that obeys the hypotheses and meets the conditions ``needs``."""
+        """Return whether one of the drawn points obeys the hypotheses exactly and meets the conditions ``needs``."""
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]
@@ -169,7 +169,7 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values of symbols, and of angles that are symbols, at a point."""
+        """Return the values that symbols, and angles which are symbols, have at a point."""
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
             if place in point.values and is_leaf(atom):
@@ -178,7 +178,7 @@ class Hypotheses:
         return values
 
     def _values_for(self, formulas: Sequence[Expr], point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values at a point, extended by values for the symbols that occur in no hypothesis."""
+        """Return the values at a point, and simple values for the symbols that occur in no hypothesis."""
         values = self._values(point)
         for number, leaf in enumerate(leaves_of(formulas)):
             values.setdefault(leaf, OTHER_VALUES[number % len(OTHER_VALUES)])
@@ -189,7 +189,7 @@ class Hypotheses:
         return infeasibility_proof(self.constraints) if self.present or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
-        """Raise InputError if the hypotheses provably hold at no real point at which the sides are defined."""
+        """Raise InputError if there is provably no real point where the hypotheses hold and the sides are defined."""
         infeasibility = self._infeasibility
         if infeasibility is None:
             return
@@ -204,12 +204,12 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether polynomials provably vanish at all real points of the constraints."""
+        """Return whether the hypotheses imply that polynomials vanish: provably, at all real points that obey them."""
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
-        """Return False if formulas provably cannot vanish together under the hypotheses, otherwise True."""
+        """Return False if formulas provably cannot all be zero under the hypotheses, otherwise True."""
         if not self.present or not zeros:
             return True
         target = self.constraints.ring
@@ -217,7 +217,7 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return a search that drops points at which a divisor is zero."""
+        """Return a search for counterexamples that drops points at which a divisor is zero."""
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
@@ -271,14 +271,14 @@ class Hypotheses:
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
-        """Return numerator and denominator of a side of the claim, which is a fraction of polynomials."""
+        """Return the numerator and the denominator of a side of the claim, as polynomials."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
         """Yield the symbols and angles that the claim uses, with their values at a point.
 
-        An angle that is no multiple of pi/2 is given by its cosine and sine.
+        An angle that is no multiple of pi/2 is stated by its cosine and sine.
         """
         quarters = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
         for leaf, place in self.ring.symbols.items():
@@ -298,7 +298,7 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point at which the sides provably differ: their values lie in disjoint intervals of 50 digits.
+        """Return a point at which the sides provably differ: intervals around their values, to 50 digits, are disjoint.
 
         Return None if no such point is known.
         """

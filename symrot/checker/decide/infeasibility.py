@@ -1,4 +1,4 @@
-"""Proofs that constraints hold at no real point, and that a formula vanishes wherever they hold.
+"""Proofs that no real point obeys some constraints, and that a formula vanishes wherever they hold.
 
 A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
 basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
@@ -32,12 +32,12 @@ MOST_PRODUCTS = 150_000
 
 
 class _Undecided(Exception):
-    """An exception for a case that could not be proven impossible."""
+    """Exception raised for a case that could not be proven impossible."""
 
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """The reason why constraints hold nowhere, and the polynomial that cannot vanish (None if 1 = 0 follows)."""
+    """The reason why no point obeys the constraints, and the polynomial that cannot vanish (None if 1 = 0 follows)."""
 
     reason: str
     polynomial: PolyElement | None = None
@@ -65,7 +65,7 @@ def infeasibility_proof(constraints: Constraints) -> Infeasibility | None:
 
 
 def vanishes_on(constraints: Constraints, formula: PolyElement) -> bool:
-    """Return whether a polynomial of the same ring provably vanishes at all real points of the constraints."""
+    """Return whether a polynomial of the same ring provably vanishes at all real points that obey the constraints."""
     return infeasibility_proof(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
 
 
@@ -87,7 +87,7 @@ class _Prover:
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
     def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
-        """Return why polynomials cannot vanish together; raise ``_Undecided`` if no reason is known."""
+        """Return the reason why polynomials cannot vanish together; raise ``_Undecided`` if none is known."""
         self.cases += 1
         if self.cases > MOST_CASES or rounds == 0:
             raise _Undecided
@@ -119,9 +119,9 @@ class _Prover:
         return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
-        """Return the factors of a polynomial that may vanish, each once.
+        """Return the different factors of a polynomial that may be zero somewhere.
 
-        The list is empty if no factor may vanish, and for the polynomial zero.
+        The list is empty if no factor can be zero, and for the polynomial zero.
         """
         if not poly or poly.is_ground:
             return []
@@ -132,10 +132,10 @@ class _Prover:
         ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return polynomials that vanish wherever ``poly`` does.
+        """Return simpler polynomials, all of which vanish wherever ``poly`` does.
 
-        They are its terms, without exponents, if all terms have one sign, the forms l of :meth:`squares` if it is a sum
-        of squares, otherwise ``poly`` itself.
+        They are its terms, without exponents, if all terms have one sign; the linear forms of :meth:`squares`
+        if it is a sum of squares; otherwise ``poly`` itself.
         """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
@@ -157,7 +157,7 @@ class _Prover:
         return sign
 
     def one_signed(self, poly: PolyElement) -> bool:
-        """Return whether the form of a polynomial shows that it is nowhere zero."""
+        """Return whether the form of a polynomial, such as ``x^2 + 1``, shows that it is nowhere zero."""
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         strict = any(all(place in self.signed for place, power in enumerate(mono) if power) for mono in poly)
         if strict and (signs == {1} or signs == {-1}):
@@ -169,7 +169,7 @@ class _Prover:
         return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
 
     def rootless(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial in one unknown has no real root of the sign that the unknown has.
+        """Return whether a polynomial in one unknown has no real root with the sign that is assumed for the unknown.
 
         The roots are counted by Sturm's theorem.
         """
@@ -187,9 +187,9 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l) such that a polynomial is plus or minus the sum of d*l^2, with d > 0 and l linear.
+        """Write a polynomial, or its negative, as a sum of d*l^2 with d > 0 and l linear; return the pairs (d, l).
 
-        The list is empty if there are no such pairs.
+        The list is empty if that is impossible.
         """
         if max(map(sum, poly)) != 2:
             return []
@@ -200,7 +200,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return a quadratic polynomial as pairs (d, l) with the sum of d*l^2, or an empty list; complete squares."""
+        """Write a quadratic polynomial as a sum of d*l^2 by completing squares; return the pairs (d, l), or []."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -221,7 +221,7 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether a polynomial is nonzero for all values of its unknowns within their bounds."""
+        """Return whether a polynomial is nonzero for all values that its unknowns can have by their bounds."""
         bounds = self.bounds(zeros)
         low, high = Fraction(0), Fraction(0)
         for mono, coefficient in poly.items():
@@ -230,7 +230,7 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the smallest and largest values of unknowns, from their signs and from ``sum of d*x^2 = constant``."""
+        """Return the smallest and largest values of unknowns, by their signs and by ``sum of d*x^2 = constant``."""
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)
@@ -253,7 +253,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def _root_above(value: Fraction, power: int) -> Fraction:
-    """Return a rational upper bound of the root of a positive number; the root itself if it is an integer."""
+    """Return a rational upper bound of a root of a positive number; the root itself if it is an integer."""
     size = Fraction(1)
     while size**power < value:
         size *= 2

@@ -1,8 +1,7 @@
 """Equations with powers too large to be expanded, such as ``(a - x)**6000 == (x - a)**6000``.
 
-All powers of one base u become ``Z u^m`` with a letter Z for the smallest large power, which is not expanded. An
-equation that holds for all values of the letters holds for the powers too. A false equation is refuted at a point with
-small numbers.
+Among the large powers of one base u, the smallest becomes a letter Z, and the others become ``Z u^m``. An equation that
+holds for all values of the letters holds for the powers too. A false equation is refuted at a point with small numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -46,7 +45,7 @@ DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degrees of formulas in symbols, sines and cosines of base angles, once expanded."""
+    """Return an upper bound on the degrees that formulas have once expanded, in symbols, sines and cosines."""
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)
     known: dict[Expr, int] = {}
@@ -58,7 +57,7 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, for each atom of an angle or exponent, the greatest common divisor of its coefficients."""
+    """Return, for each symbol in an angle or exponent, the greatest common divisor of its coefficients there."""
     arguments = {
         node.args[0]
         for formula in formulas
@@ -69,7 +68,7 @@ def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
 
 
 def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
-    """Return an upper bound on the sum of the degrees of numerator and denominator of a formula."""
+    """Return an upper bound on the degree of a formula's numerator plus that of its denominator."""
     if node not in known:
         below = [_degree(part, known, bases) for part in node.args]
         if isinstance(node, Mul):
@@ -86,10 +85,10 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return the sum of numerator times denominator of the coefficients in an angle: 5 for 3*x + y/2.
+    """Estimate the degree of the sine of an angle, in the sines and cosines of its symbols: 5 for 3*x + y/2.
 
-    It estimates the degree of the sine of the angle in the sines and cosines of x and y/2. The coefficient of an atom
-    in ``bases`` is counted in multiples of the value there.
+    Each coefficient counts as numerator times denominator. The coefficient of an atom in ``bases`` is counted in
+    multiples of the value there.
     """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
@@ -107,7 +106,7 @@ def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
 
 @dataclass(frozen=True)
 class ShorterPowers:
-    """Formulas with letters for their large powers.
+    """Formulas in which letters replace large powers.
 
     Attributes
     ----------
@@ -121,7 +120,7 @@ class ShorterPowers:
 
 
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
-    """Return formulas with letters for large powers, or None if there are no such powers or too many bases."""
+    """Return formulas with letters in place of large powers; None if there are none, or too many different bases."""
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
     large = {node for node in powers if abs(node.exp) > LARGEST_EXPANDED}
     bases: dict[Expr, list[Expr]] = {}
@@ -153,7 +152,7 @@ def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
 
 
 def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
-    """Return a point with small numbers at which both sides have values that differ and all needs hold, or None."""
+    """Return a point with small numbers at which the sides have different values and all needs are met, or None."""
     leaves = leaves_of([left, right, *(need.formula for need in stated)])
     needs = [*needs_of([left, right]), *stated]
     for numbers in islice(product(VALUES, repeat=len(leaves)), MOST_POINTS):
@@ -168,7 +167,7 @@ def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Coun
 
 
 def _written(value: Any, digits: int) -> str:
-    """Return an interval as a number: exactly if it is a short whole number, otherwise its first digits."""
+    """Return an interval as a number: an exact short integer, or the first digits of its midpoint."""
     middle = mpf(value.mid)
     if value.a == value.b and middle == int(middle) and len(str(int(middle))) <= LONGEST_WHOLE_NUMBER:
         return str(int(middle))

@@ -1,6 +1,6 @@
-"""Rational points of quadrics, the zeros of polynomials of degree 2.
+"""Rational points of quadrics, which are the zeros of polynomials of degree 2.
 
-One point with simple coordinates is found first; all other points lie on straight lines through it.
+A search gives one point with simple coordinates; all other points lie on straight lines through it.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ TRIES = 60
 
 
 def rational_square_root(value: Any) -> Any:
-    """Return the square root of a rational number if it is rational, else None."""
+    """Return the square root of a rational number if the root is rational, else None."""
     if value < 0:
         return None
     above, below = isqrt(int(value.numerator)), isqrt(int(value.denominator))
@@ -35,14 +35,14 @@ def rational_square_root(value: Any) -> Any:
 
 
 def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a random rational point at which a polynomial of degree 2 vanishes; None if no simple point is found.
+    """Return a random rational point at which a polynomial of degree 2 vanishes; None if the search fails.
 
     Parameters
     ----------
     poly : PolyElement
         A polynomial of degree 2 over the rationals.
     places : sequence of int
-        The generators that occur in it, at least two.
+        The numbers of the unknowns that occur in it, at least two.
     source : Random
     """
     base = _simple_point(poly, places, source)
@@ -59,7 +59,7 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational point where a polynomial is zero, or None; all unknowns but one have numbers of few digits."""
+    """Return a rational zero of a polynomial, or None; all coordinates but one are numbers of few digits."""
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

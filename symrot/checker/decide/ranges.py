@@ -1,8 +1,8 @@
-"""Conditions on signs, written as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
+"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
 
 A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Each formula is factored;
 factors of known sign are left out, bounds of one quantity are joined, and conditions that hold everywhere or follow
-from the others are dropped. What is written holds exactly where the conditions hold and their formulas have values.
+from the others are dropped. The text holds exactly where the conditions hold and their formulas have values.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy
-from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, cos, cosh, exp, sin
+from sympy import Abs, Add, Dummy, Expr, Integer, Mul, Rational, Symbol, cos, cosh, exp, sin
 from sympy.core.relational import Relational
 from sympy.polys.polyerrors import PolynomialError
 
@@ -23,7 +23,7 @@ from symrot.exact.printing import as_text
 from symrot.exact.ring.roots import is_positive_where_defined
 from symrot.exact.size import pieces
 
-__all__ = ["condition_texts", "follow", "range_text", "with_domain"]
+__all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
 """A formula with more symbols and operations is written as it is."""
@@ -33,9 +33,9 @@ Sign = tuple[Expr, str]
 
 
 def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
-    """Return conditions as text, joined by ``and``; empty if they hold everywhere.
+    """Return conditions as text, joined by ``and``; the text is empty if they hold everywhere.
 
-    With ``divided=False`` the text leaves out that divisors are not zero.
+    With ``divided=False`` the text does not say that divisors are nonzero.
 
     Examples
     --------
@@ -53,9 +53,9 @@ def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts: its requirements, then the other conditions of its formulas.
+    """Return the conditions of a decision as texts: first its requirements, then the other ones.
 
-    A condition that follows from the only requirement is left out.
+    If there is only one requirement, conditions that follow from it are left out.
     """
     conditions = list(conditions)
     required = [each for each in conditions if isinstance(each, Requirement)]
@@ -65,8 +65,18 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
     return (*(each.text for each in required), *(text for text in texts if text not in stated))
 
 
+def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
+    """Return the symbols that are positive or nonnegative under conditions, each with a symbol that is so by itself."""
+    signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
+    return {
+        symbol: Symbol(symbol.name, **{"positive" if other.is_positive else "nonnegative": True})
+        for symbol, other in signed.items()
+        if symbol.is_nonnegative is None
+    }
+
+
 def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
-    """Return a requirement whose text includes what the conditions say about its quantities.
+    """Return a requirement whose text also contains what the conditions say about its quantities.
 
     ``x >= 0`` under the condition ``x != 0`` becomes ``x > 0``.
     """
@@ -87,7 +97,7 @@ def _signs(conditions: Iterable[Any]) -> list[Sign]:
 
 @dataclass(frozen=True)
 class _Bound:
-    """A factor of a formula as ``slope * (quantity - root)``; the slope is 1 or -1."""
+    """A linear factor of a formula in the form ``slope * (quantity - root)``, with the slope 1 or -1."""
 
     quantity: Expr
     root: Expr
@@ -99,7 +109,7 @@ class _Bound:
 
 
 def _bound(factor: Expr) -> _Bound:
-    """Return a factor as a quantity minus a number; ``2*x - pi`` is x minus pi/2."""
+    """Return a factor as a quantity minus a number, up to scale: x minus pi/2 for ``2*x - pi``."""
     constant, rest = factor.as_independent(*_leaves(factor), as_Add=True)
     content, quantity = rest.as_coeff_Mul()
     if quantity.is_Add:
@@ -111,7 +121,7 @@ def _bound(factor: Expr) -> _Bound:
 
 
 def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
-    """Return whether a product is proven not to be negative where a factor is zero."""
+    """Return whether a product is proven to be nonnegative where one of its factors is zero."""
     bound = _bound(factor)
     return bool(bound.quantity.is_Symbol and surely_nonnegative(product.xreplace({bound.quantity: bound.root})))
 
@@ -129,7 +139,7 @@ def _leaves(formula: Expr) -> list[Expr]:
 
 
 def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
-    """Return a formula as (sign, factor -> power), without positive numbers; None if it cannot be factored."""
+    """Factor a formula; return (sign, factor -> power) without positive numbers, or None if that fails."""
     above, below = sympy.fraction(sympy.together(formula))
     sign, powers = 1, dict[Expr, int]()
     for part, direction in ((above, 1), (below, -1)):
@@ -146,9 +156,29 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
                     return None
                 sign *= 1 if factor.is_positive or power % 2 == 0 else -1
                 continue
+            stronger = _stronger_term(factor)
+            if stronger != factor and (not power % 2 or all(each.is_positive for each in stronger.atoms(sympy.Number))):
+                for term in Mul.make_args(stronger):
+                    powers[term] = powers.get(term, 0) + direction * int(power)
+                continue
             for linear in _linear_factors(factor):
                 powers[linear] = powers.get(linear, 0) + direction * int(power)
     return sign, powers
+
+
+def _stronger_term(factor: Expr) -> Expr:
+    """Return the term of a sum of two that gives the sum its sign everywhere: x for ``x + sqrt(x^2 - 1)``.
+
+    Return other formulas unchanged. The square of this term is larger than that of the other one, unless both are zero.
+    """
+    if not factor.is_Add or len(factor.args) != 2 or not factor.has(Abs, sympy.Pow):
+        return factor
+    for first, second in (factor.args, factor.args[::-1]):
+        excess = (first**2 - second**2).expand().replace(Abs, lambda inner: sympy.sqrt(inner**2))
+        vanishing = excess.args[0] if excess.is_Pow and excess.is_nonnegative else None
+        if excess.is_positive or (vanishing and vanishing.is_Symbol and first.subs(vanishing, 0) == 0):
+            return first
+    return factor
 
 
 def _linear_factors(factor: Expr) -> tuple[Expr, ...]:
@@ -169,7 +199,7 @@ def _always_positive(factor: Expr) -> bool:
 
 
 def _exceeds_absolute(factor: Expr) -> bool:
-    """Return whether a factor is ``sqrt(P) + a`` with ``P > a^2``, as ``sqrt(x^2 + 1) - x`` is."""
+    """Return whether a factor is positive as ``sqrt(x^2 + 1) - x`` is: ``sqrt(P) + a`` with ``P > a^2``."""
     roots = [term for term in Add.make_args(factor) if term.is_Pow and term.exp == Rational(1, 2)]
     if len(roots) != 1 or not factor.is_Add:
         return False
@@ -191,7 +221,7 @@ def _is_definite(factor: Expr) -> bool:
 
 @dataclass
 class _Range:
-    """The lower and upper bound of a quantity, each a number or None, and whether the quantity may reach the bound."""
+    """The bounds of a quantity, each a number or None, and whether the quantity may be equal to each of them."""
 
     low: Expr | None = None
     high: Expr | None = None
@@ -220,7 +250,7 @@ class _Range:
 
 @dataclass
 class _Conditions:
-    """Conditions in their simplest form.
+    """Conditions in their simplest form, to be written as text.
 
     Attributes
     ----------
@@ -231,7 +261,7 @@ class _Conditions:
     nonzero : mapping
         Formulas that must not be zero, in the order in which they came.
     whole : list of (Expr, str)
-        Conditions that were not factored.
+        Conditions whose formulas were not factored.
     """
 
     ranges: dict[Expr, _Range] = field(default_factory=dict)
@@ -241,7 +271,7 @@ class _Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "_Conditions":
-        """Return conditions in their simplest form."""
+        """Return the given conditions in their simplest form."""
         conditions = cls()
         for formula, sign in signs:
             conditions._add(_with_plain_functions(formula), sign, divided)
@@ -280,14 +310,14 @@ class _Conditions:
         self.products.append((odd, direction, sign))
 
     def _exclude(self, factor: Expr) -> None:
-        """Add the condition that a factor is not zero."""
+        """Add the condition that a factor is nonzero."""
         if isinstance(factor, Abs):
             self._add(factor.args[0], "!= 0")
         else:
             self.nonzero[_bound(factor).formula] = None
 
     def _settle(self) -> None:
-        """Turn each product of which all factors but one have known signs into a bound, and repeat."""
+        """Simplify products repeatedly: if only one factor has an unknown sign, the product becomes a bound on it."""
         changed = True
         while changed:
             changed = False
@@ -309,7 +339,7 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a product without factors of known sign, or None if it has become a bound or holds anyway."""
+        """Return a product without its factors of known sign; None if it has become a bound, or if it always holds."""
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
         if sign == ">= 0" and all(bound.formula in self.nonzero for bound in bounds.values()):
@@ -339,13 +369,13 @@ class _Conditions:
         return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
 
     def _new_range(self, quantity: Expr) -> _Range:
-        """Return the range that follows from the form of a quantity: -1 to 1 for a sine, nonnegative for a square."""
+        """Return the range that a quantity has by its form: -1 to 1 for a sine, nonnegative for a square."""
         if isinstance(quantity, sin | cos):
             return _Range(Integer(-1), Integer(1))
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
 
     def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
-        """Add the range that a product ``(q - a)*(b - q)`` of two factors states; return whether it states one."""
+        """Turn a product ``(q - a)*(b - q)`` into the range from a to b of q; return whether it has this form."""
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
             return False
@@ -355,9 +385,14 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges exclude the zeros of a formula; a bound at a zero is taken out of its range."""
+        """Return whether the ranges exclude the zero of a formula.
+
+        If the zero is an end of a range that contains it, the end is removed from the range.
+        """
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
+            return True
+        if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
             return True
         own = self.ranges.get(bound.quantity)
         if own is None:
@@ -371,8 +406,19 @@ class _Conditions:
             own.high_closed = False
         return bool(own.sign_of(bound.root)[0])
 
+    def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
+        """Return whether a product such as ``(x - 1)*(x + 1) >= 0`` excludes a zero by excluding all between two."""
+        pair = [_bound(factor) for factor in factors]
+        if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
+            return False
+        outside = direction * pair[0].slope * pair[1].slope > 0
+        return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
+
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the range of cos(u) follows from -1 <= cos(u) <= 1 and nonzero sine or cosine of u/2."""
+        """Return whether the range of cos(u) says nothing new.
+
+        It does not if it follows from -1 <= cos(u) <= 1 and from a nonzero sine or cosine of u/2.
+        """
         if not isinstance(quantity, cos):
             return False
         half = quantity.args[0] / 2
@@ -420,7 +466,7 @@ def _texts(conditions: _Conditions) -> list[str]:
 
 
 def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str:
-    """Return the text of a product that is positive or nonnegative; ``(x - 1)*(x + 1) >= 0`` is ``abs(x) >= 1``."""
+    """Return the condition on the sign of a product as text; ``(x - 1)*(x + 1) >= 0`` becomes ``abs(x) >= 1``."""
     bounds = [_bound(factor) for factor in factors]
     if len(bounds) == 2:
         first, second = bounds
@@ -435,7 +481,7 @@ def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str
 
 
 def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
-    """Return symbols that are known to be positive or nonnegative, with substitutes that SymPy assumes to be so."""
+    """Return the symbols with positive or nonnegative ranges, each with a SymPy symbol that has this assumption."""
     values: dict[Expr, Expr] = {}
     for quantity, own in ranges.items():
         if quantity.is_Symbol and own.low is not None and own.low.is_nonnegative:
@@ -445,7 +491,7 @@ def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
 
 
 def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether a condition follows from the signs of the symbols."""
+    """Return whether a condition follows from the signs of its symbols."""
     value = formula.xreplace(dict(positive))
     if sign == ">= 0":
         return surely_nonnegative(value)
@@ -453,7 +499,7 @@ def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
 
 
 def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether the range of a compound quantity follows from the signs of its symbols."""
+    """Return whether the range of a compound quantity, such as x + y >= 0, follows from the signs of its symbols."""
     if quantity.is_Symbol or own.high is not None or own.low is None:
         return False
     return _holds(quantity - own.low, ">= 0" if own.low_closed else "> 0", positive)
@@ -481,7 +527,7 @@ def _range_text(quantity: Expr, own: _Range) -> str:
 
 
 def _one_sided(quantity: Expr, root: Expr, sign: str) -> str:
-    """Return ``quantity sign root``; a difference that is compared with zero becomes two sides: ``x >= y``."""
+    """Return the text ``quantity sign root``; a difference that is compared with zero becomes two sides: ``x >= y``."""
     terms = quantity.args if quantity.is_Add else ()
     positive = [term for term in terms if not term.could_extract_minus_sign()]
     if root == 0 and len(terms) == 2 and len(positive) == 1:

@@ -1,8 +1,8 @@
-"""Exact real points that obey constraints: rational points first, then points with algebraic coordinates.
+"""Exact real points that obey constraints: first rational points, then points with algebraic coordinates.
 
 A point is drawn at random, equation by equation. An equation that is linear in an unknown is solved for it. A quadric
 gives points on lines through one of its rational points. A polynomial in one unknown gives its roots. A product
-vanishes with one of its factors. If nothing of this applies, an unknown gets a simple value. Every point is checked
+vanishes with one of its factors. If no equation has such a form, an unknown gets a simple value. Every point is checked
 exactly before it is returned.
 """
 
@@ -48,7 +48,7 @@ class _DeadEnd(Exception):
 
 @dataclass(frozen=True)
 class RealPoint:
-    """Values of the generators (the unknowns of a ring) in one field: the rational or some real algebraic numbers."""
+    """A point: the values of unknowns in one field, the rational numbers or a field of real algebraic numbers."""
 
     values: dict[int, Any]
     field: Any = QQ
@@ -59,13 +59,13 @@ class RealPoint:
         return bool(self.field == QQ)
 
     def number(self, value: Any) -> Expr:
-        """Return an element of the point's field as an exact number of SymPy."""
+        """Return an element of the point's field as an exact SymPy number."""
         number: Expr = self.field.to_sympy(value)
         return number if self.rational else number.expand()
 
     @property
     def size(self) -> tuple[int, int]:
-        """The length of the point as text, to prefer short points; rational points come before all others."""
+        """A sort key that puts short points first: rational points, then by the length of the point as text."""
         return (not self.rational, sum(len(str(value)) for value in self.values.values() if value))
 
 
@@ -112,7 +112,7 @@ def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[
 
 
 def obeys(constraints: Constraints, point: RealPoint) -> bool:
-    """Return whether a point with a value for every generator (unknown) of the constraints obeys all of them."""
+    """Return whether a point with a value for every unknown obeys all constraints."""
     return (
         not any(value_at(poly, point) for poly in constraints.zeros)
         and all(value_at(poly, point) for poly in constraints.nonzero)
@@ -157,7 +157,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Return the point after giving values to free unknowns, then to unknowns expressed by other unknowns."""
+        """Return the finished point: free unknowns get values, then the unknowns that were expressed by others."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -170,7 +170,7 @@ class _Drawing:
         return RealPoint(self.values, self.field)
 
     def drawn(self, place: int) -> Any:
-        """Return a random rational value for a generator (an unknown), of a sign that the constraints allow."""
+        """Return a random rational value for an unknown, with a sign that the constraints allow."""
         source = self.source
         for _ in range(20):
             value = (
@@ -192,7 +192,7 @@ class _Drawing:
     # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
-        """Replace an equation ``a*b = 0`` by ``a = 0`` with a factor a; return whether there is such an equation."""
+        """Replace an equation ``a*b = 0`` by ``a = 0``; return whether there is such an equation."""
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
                 return False
@@ -205,11 +205,11 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown with a number as its coefficient; return whether there is one."""
+        """Solve an equation for an unknown whose coefficient is a number; return whether there is such an equation."""
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation for an unknown in which it is linear, with a division; return whether there is one."""
+        """Solve an equation that is linear in an unknown, by division; return whether there is such an equation."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -230,7 +230,7 @@ class _Drawing:
         return True
 
     def univariate(self) -> bool:
-        """Give the only unknown of an equation the value of a root; return whether there is such an equation."""
+        """Solve an equation with a single unknown; return whether there is such an equation."""
         for poly in self.zeros:
             places = occurring([poly])
             if len(places) == 1:
@@ -240,7 +240,7 @@ class _Drawing:
         return False
 
     def quadric(self) -> bool:
-        """Give the unknowns of an equation of degree 2 the coordinates of a rational point; return whether one fits."""
+        """Choose a rational point on the quadric of an equation of degree 2; return whether there is one."""
         if self.field != QQ:
             return False
         fitting = [p for p in self.zeros if max(map(sum, p)) == 2 and self.known.get(("barren", p), 0) < MOST_BARREN]
@@ -259,7 +259,7 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Give a simple value to an unknown of one of the equations; return True."""
+        """Give a simple value to an unknown of one of the equations; always return True."""
         poly = self.source.choice(self.zeros)
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})
@@ -268,7 +268,7 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root of a polynomial in one unknown, if necessary after extending the field by the root."""
+        """Return a root of a polynomial in one unknown; an irrational root is first added to the field."""
         generator = self.ring.gens[place]
         key = (poly, self.field)
         if key not in self.known:
@@ -284,7 +284,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count the cost of factoring a polynomial (none over the rationals); raise _DeadEnd beyond the budget."""
+        """Count the cost of factoring a polynomial, zero over the rationals; raise _DeadEnd beyond the budget."""
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
@@ -292,7 +292,7 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root of a factor, after extending the field and moving all values into it."""
+        """Return an irrational root of a factor, after adding it to the field and moving all values to that field."""
         degree = factor.degrees()[place]
         numbers = [
             _as_rational(factor.coeff(self.ring.gens[place] ** n if n else 1), self.field) for n in range(degree + 1)
@@ -319,7 +319,7 @@ class _Drawing:
 
 
 def _as_rational(value: Any, field: Any) -> Any:
-    """Return an element of a field as a rational number, or None if it is irrational."""
+    """Return an element of a field as a rational number; None if it is irrational."""
     if field == QQ:
         return value
     coefficients = value.to_list() if value else [QQ(0)]
@@ -327,7 +327,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below``."""
+    """Substitute ``above/below`` for an unknown in a polynomial; return the result times a power of ``below``."""
     degree = poly.degrees()[place]
     if not degree:
         return poly

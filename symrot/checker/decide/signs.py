@@ -1,4 +1,4 @@
-"""Proofs that a real formula is nowhere negative: by ranges, as a sum of squares, or by factors."""
+"""Proofs that a real formula is never negative: by ranges, as a sum of squares, or by factors."""
 
 from collections.abc import Callable, Sequence
 
@@ -75,7 +75,7 @@ def _by_form(formula: Expr, strict: bool) -> bool:
 
 
 def _by_factors(formula: Expr, strict: bool) -> bool:
-    """Return whether a product is proven from the signs of its factors."""
+    """Return whether the signs of its factors prove that a product is nonnegative (or positive, if ``strict``)."""
     negative = False
     for factor in formula.args:
         if _one(factor, strict):
@@ -97,7 +97,7 @@ def _one(factor: Expr, strict: bool) -> bool:
 
 
 def _by_range(formula: Expr, strict: bool) -> bool:
-    """Return whether the ranges of the terms show it."""
+    """Return whether the ranges of its terms prove that a formula is nonnegative (or positive, if ``strict``)."""
     low, _ = _bounds(formula)
     if low is None:
         return False
@@ -108,7 +108,7 @@ def _by_range(formula: Expr, strict: bool) -> bool:
 
 
 def _bounds(formula: Expr) -> Bounds:
-    """Return a lower and an upper bound of a real formula, each None if there is none."""
+    """Return a lower and an upper bound of a real formula; None in place of a bound that is not known."""
     if formula.is_Rational:
         return formula, formula
     if formula.func in RANGES:
@@ -136,16 +136,16 @@ def _bounds(formula: Expr) -> Bounds:
 
 
 def _size(formula: Expr) -> Expr | None:
-    """Return a bound of the absolute value; None if there is none."""
+    """Return an upper bound of the absolute value of a formula; None if none is known."""
     low, high = _bounds(formula)
     return None if low is None or high is None else sympy.Max(abs(low), abs(high))
 
 
 def _by_absolute_values(formula: Expr) -> bool:
-    """Return whether a sum of absolute values is at least another one, as the triangle inequality says.
+    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
 
-    With u for the formula in the only negative term -c|u|, and v >= 0 for the other terms, v^2 - c^2 u^2 decides. In
-    its expanded form |e| - e is nowhere negative.
+    If u is the formula in the only negative term -c|u|, and v >= 0 the sum of the other terms, the sign of v^2 -
+    c^2 u^2 decides. In its expanded form, |e| - e is never negative.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
@@ -175,7 +175,7 @@ def _without_absolute(formula: Expr) -> bool:
 
 
 def _by_roots(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial in one unknown changes its sign nowhere, by its real roots."""
+    """Return whether a polynomial in one unknown never changes its sign, by counting its real roots."""
     symbols = formula.free_symbols
     if len(symbols) != 1 or not formula.is_polynomial(*symbols):
         return False
@@ -203,7 +203,7 @@ def _sign(unknown: Expr) -> int:
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
-    """Return the symmetric matrix of a quadratic polynomial in its unknowns and 1, which comes first."""
+    """Return the symmetric matrix of a quadratic polynomial in the vector (1, unknowns)."""
     size = len(poly.gens) + 1
     gram = [[S.Zero] * size for _ in range(size)]
     for powers, coefficient in poly.terms():
@@ -215,9 +215,9 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 
 
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
-    """Return whether a quadratic form is nowhere negative, and positive if ``strict``, by completing squares.
+    """Return whether a quadratic form is never negative, and never zero if ``strict``, by completing squares.
 
-    Linear terms with a coefficient >= 0 in an unknown that is nowhere negative are left out: they only add to it.
+    Linear terms with a coefficient >= 0 in a nonnegative unknown are left out: they only increase the value.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):

@@ -4,7 +4,7 @@ __all__ = ["is_unordered"]
 
 
 def is_unordered(reason: BaseException | None) -> bool:
-    """Return whether an error of SymPy means that it could not find out which of two numbers is larger."""
+    """Return whether a SymPy error means that SymPy could not tell which of two numbers is larger."""
     while reason is not None:
         if isinstance(reason, TypeError) and "truth value of Relational" in str(reason):
             return True

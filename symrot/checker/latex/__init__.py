@@ -1,1 +1,1 @@
-"""Read LaTeX into the trees of claims."""
+"""The LaTeX reader of the checker: it parses LaTeX into the trees of claims."""

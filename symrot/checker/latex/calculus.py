@@ -1,12 +1,14 @@
-"""Functions, roots, fractions, derivatives and integrals in LaTeX."""
+"""Parsing functions, roots, fractions, derivatives and integrals in LaTeX."""
 
+from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
+from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
+from symrot.checker.typed.densities import over_mass
 from symrot.latex import tree
 
 __all__ = ["DOTS", "CalculusPart"]
@@ -15,7 +17,7 @@ DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
 
 class CalculusPart(NamesPart):
-    """The methods of the LaTeX reader that read functions, roots, fractions, derivatives and integrals."""
+    """The methods of the LaTeX reader that parse functions, roots, fractions, derivatives and integrals."""
 
     def trigonometric(self, function: tree.Node) -> Node:
         power = None
@@ -23,9 +25,11 @@ class CalculusPart(NamesPart):
         if raised := self.script("^"):
             power = self.argument(raised.inside)
             sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
-            is_inverse = power == negated(number(1)) and f"a{name}" in BUILT_IN
-            if is_inverse and not self.doubtful("inverse", function, self.end_of_next(), sure):
-                name, power = f"a{name}", None
+            is_inverse = power == negated(number(1))
+            if is_inverse and name in DISPUTED:
+                raise self.fail(instead(name), function)
+            if is_inverse and name in INVERSES and not self.doubtful("inverse", function, self.end_of_next(), sure):
+                name, power = INVERSES[name], None
             elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):
                 raise self.fail(sure, function)
         opening = self.peek()
@@ -34,13 +38,20 @@ class CalculusPart(NamesPart):
         else:
             argument, own = self.loose_argument(function)
             power = own if power is None else power if own is None else product([power, own])
-        node = Node("call", name, (argument,))
+        node = DEFINED[name](argument) if name in DEFINED else Node("call", name, (argument,))
         return node if power is None else Node("power", None, (node, power))
 
-    def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Read an argument without brackets, such as ``2\theta``; return its tree and an exponent of the whole sine.
+    def spelled(self, font: tree.Font) -> Node:
+        r"""Read a word in upright letters; return a function with its argument, ``\mathrm{sin}^2 x``, or a name."""
+        letters = font.inside.items if isinstance(font.inside, tree.Row) else (font.inside,)
+        command = f"\\{''.join(letter.text for letter in letters)}"
+        return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
-        The exponent is None unless a power after the argument is read as one of the sine: ``\sin\theta^2``.
+    def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
+        r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
+
+        The exponent is None unless a power after the argument is taken for one of the whole call, as in
+        ``\sin\theta^2``.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
@@ -58,7 +69,7 @@ class CalculusPart(NamesPart):
         return (negated(argument) if negative else argument), power
 
     def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
-        """Read and return the factors after the first one in an argument without brackets."""
+        r"""Parse and return the factors after the first one in an argument without brackets: t in ``\sin\omega t``."""
         factors = [self.factor()] if required else []
         first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
@@ -84,7 +95,7 @@ class CalculusPart(NamesPart):
         return factors
 
     def holds_skew_matrix(self) -> bool:
-        r"""Return whether the bracket at the cursor is a skew matrix, ``[a\times]`` or ``[a]_\times``."""
+        r"""Return whether the square bracket at the cursor is the skew matrix of a vector, ``[a\times]``."""
         end = next((n for n, item in enumerate(self.items[self.index :]) if item.text == "]"), 0)
         mark = self.peek(end + 1)
         crossed = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
@@ -111,7 +122,7 @@ class CalculusPart(NamesPart):
         return product([self.argument(above), Node("inv", None, (self.argument(below),))])
 
     def leibniz(self) -> Node | None:
-        """Read a time derivative with a slash, such as ``d\\mathbf L/dt``, and return it; otherwise None."""
+        r"""Parse and return a time derivative with a slash, such as ``d\mathbf L/dt``; return None if there is none."""
         texts = [item.text for item in self.items[self.index : self.index + 8]]
         slash = texts.index("/") if "/" in texts else 0
         below = self.index + slash + 1
@@ -128,7 +139,7 @@ class CalculusPart(NamesPart):
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
-        r"""Read a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
+        r"""Parse a derivative written as a fraction, ``\frac{d^n X}{d x^n}`` or ``\frac{d}{dx} X``; return its tree."""
         order, operand = self.inside(fraction.above, self.differentiated)
         if "d" in self.names:
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
@@ -145,16 +156,16 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        """Read the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
+        r"""Parse the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
 
-        X is None if it follows the fraction.
+        X is None if it follows the fraction, as in ``\frac{d}{dt} X``.
         """
         self.next()
         order = self.order()
         return order, None if self.peek().kind == "end" else self.expression()
 
     def variables(self) -> list[Node]:
-        """Read the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
+        """Parse the denominator of a derivative, such as ``dx^2 dy``; return its variables, here x, x and y."""
         variables: list[Node] = []
         while self.peek().kind != "end":
             if not is_d(self.next()):
@@ -183,13 +194,16 @@ class CalculusPart(NamesPart):
         return derivative
 
     def over_body(self) -> Node:
-        r"""Read ``\int x^2\,dm``, an integral over a body that the text does not describe; return its tree."""
+        r"""Parse ``\int x^2\,dm``, an integral over a body of unknown shape; return its tree."""
         self.script("_")
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
         self.integrals -= 1
-        if not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits, \\int_a^b, or dm for an integral over a body")
+        if self.differential() and self.peek(1).text in ("V", "A", "s") and (mass := over_mass(integrand)) is not None:
+            self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
+            integrand = mass
+        elif not self.differential() or self.peek(1).text != "m":
+            raise self.fail("limits, \\int_a^b, dm, or a density and dV for an integral over a body")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 
@@ -213,7 +227,7 @@ class CalculusPart(NamesPart):
         return Node("call", "integrate", (integrand, *ranges))
 
     def has_limits(self) -> bool:
-        """Return whether limits follow an integral sign; the name of a body under it is no limit."""
+        """Return whether limits follow an integral sign; the name of a body below the sign is no limit."""
         lower = self.peek()
         marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
         is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")

@@ -1,4 +1,4 @@
-"""The cursor of the LaTeX checker: the place in a formula, with the names that its claim declares."""
+"""The cursor of the checker's LaTeX reader: the position in a formula, and the names that the claim declares."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -44,9 +44,9 @@ WRAPPERS = (
 
 @dataclass(frozen=True)
 class Names:
-    """The declared names: symbols, functions of time, definitions that are matrices or columns, other definitions.
+    """The names that a claim declares: symbols, functions of time, matrices (``columns`` are some of them), and others.
 
-    With ``implied`` undeclared names are allowed.
+    If ``implied``, undeclared names are allowed too.
     """
 
     symbols: Collection[str] = ()
@@ -73,7 +73,7 @@ class Names:
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column vector: then bars mean its length, otherwise a determinant."""
+        """Return whether a matrix is a column vector, so that bars around it mean its length and not a determinant."""
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
@@ -91,7 +91,7 @@ def is_letter(item: tree.Node) -> bool:
 
 
 def is_d(item: tree.Node) -> bool:
-    """Return whether an item is d, \\partial or an upright d, perhaps with a power."""
+    r"""Return whether an item is the d of a derivative: d, ``\partial`` or an upright d, perhaps with a power."""
     if isinstance(item, tree.Scripts):
         return is_d(item.base) and [script.text for script in item.scripts] == ["^"]
     if isinstance(item, tree.Font):
@@ -100,7 +100,7 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """The place up to which a formula has been read, with the open integrals and the functions of time so far."""
+    """A position in a formula, with what was learnt before it: functions of time, vectors, ambiguous places."""
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
@@ -148,7 +148,7 @@ class Cursor(cursor.Cursor):
                 expected = instead if piece.kind == "left" else alone
                 raise complaint(source, where, source.index(piece.text, piece.start), expected)
         if len(pieces) > MOST_PIECES:
-            raise InputError(f"{place}expected a formula of at most {MOST_PIECES} pieces, got {len(pieces)}")
+            raise InputError(f"{place}expected at most {MOST_PIECES} numbers, names and signs, got {len(pieces)}")
         self.frames = _frames(pieces)
         self.short = shorthands(pieces, {*names.symbols, *names.functions, *names.matrices, *names.others})
         if self.short and flips is not None and self.doubtful("shorthand", pieces[0], pieces[0].start + 1, ""):
@@ -156,12 +156,12 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record a place with two readings; return whether it has its less usual meaning.
+        """Record an ambiguous place of the text; return whether this reading gives it its less usual meaning.
 
         Raises
         ------
         InputError
-            If the text must have a single reading; the message asks for ``expected`` at ``place``, by default ``item``.
+            If the text must be unambiguous; the message asks for ``expected`` at ``place``, by default ``item``.
         """
         if self.flips is None:
             raise self.fail(expected, place or item)
@@ -171,7 +171,7 @@ class Cursor(cursor.Cursor):
         return doubt.key in self.flips
 
     def words(self, item: tree.Node) -> str:
-        r"""Return the words of an item such as ``\text{for all}``; an empty text for a formula and for a name."""
+        r"""Return the words of an item such as ``\text{for all}``; an empty text if the item is a formula or a name."""
         if not isinstance(item, tree.Font) or item.text not in TEXT_FONTS:
             return ""
         inside = item.inside
@@ -189,7 +189,7 @@ def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
 
 
 def _frames(pieces: Sequence[Token]) -> set[str]:
-    r"""Return the letters that mark the frames of names, such as A and B in ``{}^A x = R\,{}^B x``."""
+    r"""Return the letters of frames that stand before names, such as A and B in ``{}^A x = R\,{}^B x``."""
     texts = [piece.text for piece in pieces]
     frames = set()
     for place in range(len(texts) - 3):

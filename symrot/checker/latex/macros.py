@@ -1,4 +1,4 @@
-r"""Commands that are short for other LaTeX, such as ``\dv{x}{t}``, and commands that mean nothing in a formula.
+r"""LaTeX commands that abbreviate other LaTeX, such as ``\dv{x}{t}``, and commands that mean nothing in a formula.
 
 The tokens of the longer form have the position of the command, and the tokens of an argument keep their own positions.
 """
@@ -68,7 +68,7 @@ INSTEAD = {
 
 
 def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Token]:
-    r"""Return tokens in which the longer form replaces each command that is short for other LaTeX.
+    r"""Return tokens in which every abbreviating command is replaced by its longer form.
 
     Raises
     ------
@@ -113,7 +113,7 @@ class _Expansion:
                 yield from self.longer(piece)
 
     def equation_number(self) -> int:
-        r"""Return how many tokens the number of the equation has, as in ``a = b \qquad (5.12)``; 0 without one."""
+        r"""Return the number of tokens of an equation number, as in ``a = b \qquad (5.12)``; 0 if there is none."""
         rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
         texts = [piece.text for piece in rest]
         end = texts.index(")") if texts[:1] == ["("] and ")" in texts[:-1] else 0
@@ -122,7 +122,7 @@ class _Expansion:
         return end + 1 if inside and is_number and rest[end + 1].kind in ("end", "line", "close") else 0
 
     def longer(self, command: Token) -> Iterator[Token]:
-        """Yield the tokens of the longer form of a command, whose arguments follow."""
+        """Yield the tokens of the longer form of a command; the command's arguments are at the cursor."""
         forms = MACROS[command.text]
         if self.at("*"):
             self.place += 1
@@ -145,7 +145,7 @@ class _Expansion:
         return self.place < len(self.pieces) and self.pieces[self.place].text in texts
 
     def order(self) -> Sequence[Token]:
-        """Read the order of a derivative in square brackets; return its tokens, or no tokens if there is no order."""
+        """Parse the order of a derivative in square brackets, ``[2]``; return its tokens, none if there is no order."""
         if not self.at("["):
             return []
         texts = [piece.text for piece in self.pieces[self.place :]]
@@ -155,7 +155,7 @@ class _Expansion:
         return inside
 
     def argument(self, command: Token) -> Sequence[Token]:
-        """Read the argument of a command and return its tokens: a group without its braces, or a single token."""
+        """Parse the argument of a command and return its tokens: a group without its braces, or a single token."""
         while self.place < len(self.pieces) and self.pieces[self.place].kind == "space":
             self.place += 1
         first = self.place

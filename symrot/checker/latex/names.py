@@ -1,4 +1,4 @@
-"""Names in LaTeX: subscripts, primes, arguments of time, marks of vectors, words in upright letters."""
+"""Parsing names in LaTeX: subscripts, primes, ``(t)``, marks of vectors, words in upright letters."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -13,11 +13,13 @@ from symrot.latex import tree
 
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
-OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part"}
+OPERATORS = {
+    "\\arg": "arg", "\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part",
+}  # fmt: skip
 SPELLED = {
     "tr": "trace", "Tr": "trace", "Det": "det", "Diag": "diag", "Atan2": "atan2", "ATAN2": "atan2", "arctan2": "atan2",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "vers": "vers", "adj": "adjugate",
-    "Re": "real_part", "Im": "imaginary_part",
+    "Re": "real_part", "Im": "imaginary_part", "arg": "arg",
     **{name: name for name in BUILT_IN},
 }  # fmt: skip
 """Name in upright letters -> the function that it means."""
@@ -39,7 +41,7 @@ NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\wid
 
 
 class NamesPart(SumsPart):
-    """The methods of the LaTeX reader that read names, and functions that are called by name."""
+    """The methods of the LaTeX reader that parse names, and functions that are called by name."""
 
     def letter(self, item: tree.Node) -> Node:
         if item.start in self.short:
@@ -47,7 +49,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\"), item)
 
     def cosine_or_sine(self, item: tree.Node) -> Node:
-        r"""Read what follows the letter in a short form such as ``c_\theta``; return the cosine or sine."""
+        r"""Parse what follows the letter of a short form such as ``c_\theta``; return the cosine or sine."""
         function, angles = self.short[item.start]
         power = None if angles else self.script("^")
         if angles:
@@ -67,7 +69,7 @@ class NamesPart(SumsPart):
         return value if power is None else self.raised(value, power.inside)
 
     def named(self, name: str, item: tree.Node) -> Node:
-        """Read the subscript, primes and ``(t)`` that follow a name; return the tree of the whole name."""
+        """Parse the subscript, primes and ``(t)`` after a name; return the tree of the whole name."""
         if name == "Sigma" and self.peek().text.removeprefix("\\") in TOTALS and self.flips is not None:
             return self.total(item)
         if name in ("Delta", "delta") and name not in self.names and not self.at("_", "'"):
@@ -99,7 +101,7 @@ class NamesPart(SumsPart):
         return self.vector(known) if known in self.crossed else Node("name", known)
 
     def skew_of_vector(self) -> Node | None:
-        r"""Read the bracket of ``S(\omega)`` and return the skew matrix; return None for any other bracket."""
+        r"""Parse the bracket of ``S(\omega)`` and return the skew matrix of the vector; None for any other bracket."""
         inner = self.peek(1)
         is_vector = inner.text in ("\\omega", "\\Omega", *VECTOR_MARKS) and self.peek(2).text == ")"
         if not self.at("(") or not is_vector or "S" in self.names or self.flips is None:
@@ -112,7 +114,7 @@ class NamesPart(SumsPart):
         return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
-        r"""Read a change of a quantity, ``\Delta t``, and return the node of the one name Delta_t."""
+        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t."""
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
         if self.flips is None:
@@ -125,17 +127,17 @@ class NamesPart(SumsPart):
         return Node("name", f"{name}_{quantity.value}")
 
     def end_of_next(self) -> int:
-        """Return the position of the end of the next item, for an excerpt."""
+        """Return the position where the next item ends, as the end of an excerpt in a note."""
         return max(self.peek(1).start, self.peek().start + 1)
 
     def refuse_call(self) -> None:
-        """Raise InputError for ``f(x)`` and ``f(0)``, which may be a product or the value of a function."""
+        """Raise InputError for ``f(x)`` and ``f(0)``: each may be a product, or the value of a function."""
         inner = self.peek(1)
         if self.at("(") and (inner.kind == "number" or is_letter(inner)) and self.peek(2).text == ")":
             raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
 
     def subscript(self, mark: tree.Script) -> str:
-        """Return the text of a subscript."""
+        """Return the content of a subscript as text."""
         inside = mark.inside
         if inside.kind == "number" and self.is_cut(inside):
             raise self.fail("braces around a subscript of several digits", inside)
@@ -146,7 +148,7 @@ class NamesPart(SumsPart):
         return pieces
 
     def pieces(self, items: tuple[tree.Node, ...]) -> Iterator[str]:
-        """Yield the letters and numbers of a subscript, upright or not, with ``_`` for a comma."""
+        """Yield the letters and numbers of a subscript, upright or not; a comma becomes ``_``."""
         for item in items:
             if isinstance(item, tree.Row):
                 yield from self.pieces(item.items)
@@ -168,7 +170,7 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript as it is declared, ``I_1`` or ``I1``; ``I_1`` if neither is declared."""
+        """Return a name with its subscript in the form that is declared, ``I_1`` or ``I1``; if neither is, ``I_1``."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
@@ -176,7 +178,7 @@ class NamesPart(SumsPart):
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return a time derivative; an undeclared name becomes a function of time."""
+        """Return the time derivative of a formula; if it is an undeclared name, the name becomes a function of time."""
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
@@ -191,7 +193,7 @@ class NamesPart(SumsPart):
         return node
 
     def take_time_call(self, name: str) -> None:
-        """Step over ``(t)`` after a function of time; refuse brackets with any other argument."""
+        """Skip ``(t)`` after a function of time; refuse brackets with any other argument."""
         if self.called_with_time() and (
             name in self.names.functions or (self.names.implied and name not in self.names)
         ):
@@ -200,10 +202,10 @@ class NamesPart(SumsPart):
         self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Read a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return its node, as a vector."""
+        r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
-            raise self.fail("eye(n) among the definitions for a unit matrix", inside)
+            raise self.fail("the name of a unit matrix that is defined as eye(n), not a bold number,", inside)
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node
@@ -218,15 +220,15 @@ class NamesPart(SumsPart):
         return node
 
     def total(self, sign: tree.Node) -> Node:
-        r"""Read ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
+        r"""Parse ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
-            raise self.fail("the terms of a sum with +", sign)
+            raise self.fail("the terms of the sum, joined by +,", sign)
         self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record a name as a vector or tensor that still needs components, and return its node, marked with MARK."""
+        """Record a name as a vector or tensor that needs names for its components; return its node, ending in MARK."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -236,7 +238,7 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Read a name whose mark is part of the name, and return its node: ``\bar I`` is another symbol than ``I``.
+        r"""Parse a name whose accent is part of the name, as in ``\bar I``, which is another symbol than ``I``.
 
         A tilde over a vector means its skew matrix; a bar over a vector is part of its name.
         """
@@ -252,7 +254,10 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Return what ``read`` reads under a mark, with the subscript and primes after it: ``\dot{\mathbf{H}}_G``."""
+        r"""Parse what is under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``.
+
+        ``read`` parses it.
+        """
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)
@@ -261,7 +266,7 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Read a letter, a number or a command, or a symbol with a mark such as a hat; return its tree."""
+        """Parse a letter, a number or a command, or a symbol with a mark such as a hat; return its tree."""
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
             return self.base(item)
@@ -270,7 +275,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\") + ending, item)
 
     def spelled(self, font: tree.Font) -> Node:
-        """Read ``\\operatorname{tr}(..)`` or ``\\mathrm{abc}``; return a call, or a name of several letters."""
+        r"""Parse ``\operatorname{tr}(..)`` or ``\mathrm{abc}``; return a call, or a name of several letters."""
         node = self.under(font, lambda: self.word(font))
         if node.kind == "call":
             return self.called(str(node.value))
@@ -278,7 +283,7 @@ class NamesPart(SumsPart):
         return node
 
     def word(self, font: tree.Font) -> Node:
-        """Read letters and digits, with a subscript and primes; return a name, or the call of a built-in function."""
+        """Parse letters and digits, with a subscript and primes; return a name, or the call of a built-in function."""
         name = ""
         while self.peek().kind in ("letter", "number"):
             name += self.next().text
@@ -294,7 +299,7 @@ class NamesPart(SumsPart):
         return self.called(OPERATORS[item.text])
 
     def called(self, name: str) -> Node:
-        """Read the arguments of a function in brackets, or one factor without brackets; return the call."""
+        """Parse the arguments of a function, in brackets or as one factor without brackets; return the call."""
         opening = self.peek()
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))
@@ -303,7 +308,7 @@ class NamesPart(SumsPart):
 
 
 def appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a formula; if it is a derivative already, the variable is added to its variables."""
+    """Return the derivative of a formula by a variable; a time derivative becomes one of the next higher order."""
     if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
         return Node("call", "diff", (*node.args, variable))
     return Node("call", "diff", (node, variable))

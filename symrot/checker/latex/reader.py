@@ -1,7 +1,7 @@
-"""The LaTeX reader: from an equation to the tree of a claim. Every token is used, or refused with its position.
+r"""The LaTeX reader: from an equation to the tree of a claim. Every token is used, or refused with its position.
 
-Where usage is ambiguous (``\\sin\\theta/2``, ``\\sin^{-1}``, ``a/bc``, ``x_12``, ``a \\times b \\times c``) the reader
-asks for brackets and does not choose. The text of the claim shows how the LaTeX was read.
+Where usage is ambiguous (``\sin\theta/2``, ``\sin^{-1}``, ``a/bc``, ``x_12``, ``a \times b \times c``), the reader asks
+for brackets instead of guessing. The text of the claim shows how the LaTeX was read.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -45,7 +45,7 @@ SEPARATORS = (",", ";", "\\\\")
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation read from LaTeX, with its text in the language of claims, and its vectors that need components."""
+    """An equation read from LaTeX, its text in SymPy syntax, and those vectors in it whose components get names."""
 
     relation: Relation
     text: str
@@ -82,7 +82,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 
 
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
-    r"""Return the readings of a LaTeX text, the usual one first.
+    r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
     A text may have chains ``a = b = c``, with commas between them or on lines of their own. A text with ``\\pm`` is
     read twice: with the upper signs, then with the lower ones.
@@ -104,7 +104,7 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return the reading of a LaTeX text in which the doubtful places ``flips`` have their less usual meaning."""
+    """Return the reading of a LaTeX text in which the ambiguous places ``flips`` have their less usual meaning."""
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
@@ -126,10 +126,10 @@ def _read(
     source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
     flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
-    """Return the lines that ``read`` reads from a LaTeX text, and the interpreter that has read them.
+    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
 
-    If a name without a mark turns out to be a vector only late in the text, the text is read again. Without ``flips``,
-    a text that has two readings is refused.
+    If a name without a mark turns out to be a vector only late in the text, the text is parsed again. Without
+    ``flips``, an ambiguous text is refused.
     """
     crossed: frozenset[str] = frozenset()
     while True:
@@ -147,7 +147,7 @@ def _read(
 
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
-    """Return a note on the symbols, other than vectors, that are constants in derivatives with respect to time."""
+    """Return a note on the symbols, other than vectors, that are treated as constants in time derivatives."""
     nodes = [node for side in sides for _, node in walk(side)]
     rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
     parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
@@ -160,7 +160,7 @@ def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str,
 
 
 def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector, ...]]:
-    """Return the text, in the language of claims, of a formula in LaTeX that has no equals sign, and its vectors.
+    """Return the text, in SymPy syntax, of a LaTeX formula without an equals sign, and the vectors in it.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector,
 
 
 def _timed(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which names that depend on time are written ``f(t)``."""
+    """Return a tree in which the names that depend on time are written ``f(t)``."""
     if node.kind == "name" and node.value in names:
         return Node("call", node.value, (TIME,))
     if node.kind == "call" and node.value in names:
@@ -182,7 +182,7 @@ def _timed(node: Node, names: Collection[str]) -> Node:
 
 
 class _Interpreter(CalculusPart):
-    """The complete LaTeX reader, put together from its parts."""
+    """The complete LaTeX reader, combined from the classes that parse sums, names and calculus."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {
         "letter": CalculusPart.letter,
@@ -202,19 +202,19 @@ class _Interpreter(CalculusPart):
     }
 
     def formula(self) -> list[Line]:
-        """Read one formula without an equals sign; return it as the only side of the only line."""
+        """Parse one formula without an equals sign; return it as a single line with a single side."""
         formula = self.expression()
         if self.peek().kind != "end":
             raise self.fail("one formula without '='" if self.at("=") else "an operator or the end")
         return [([], [formula])]
 
     def equation(self) -> list[Line]:
-        """Read one equation; return it as the only line."""
+        """Parse one equation; return it as the only line."""
         (line,) = self.chains()
         return [line]
 
     def equations(self) -> list[Line]:
-        """Read equations and return them as lines; a line that starts with ``=`` continues the line before it."""
+        """Parse equations and return them as lines; a line that starts with ``=`` continues the line before it."""
         self.items = [item for item in self.items if item.text != "&"]
         while isinstance(self.peek(), tree.Row) and self.peek(1).kind == "end":  # \boxed{..}
             self.enter(self.peek())
@@ -232,7 +232,10 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Read and return chains ``a = b = c`` up to the end; ``line`` is the part of the first chain read so far."""
+        """Parse chains ``a = b = c`` up to the end; return them as lines.
+
+        ``line`` is the beginning of the first chain, if that is already parsed.
+        """
         lines: list[Line] = []
         while True:
             if line is None:
@@ -259,11 +262,14 @@ class _Interpreter(CalculusPart):
             line = None
 
     def is_joint(self) -> bool:
-        r"""Return whether the next item is a word between two equations, such as ``\text{and}``."""
+        r"""Return whether the next item is a word that joins two equations, such as ``\text{and}``."""
         return self.words(self.peek()) in JOINTS
 
     def is_remark(self) -> bool:
-        r"""Return whether words without an equation follow, such as ``\text{for all } x``; a note says so."""
+        r"""Return whether words without an equation follow, such as ``\text{for all } x``.
+
+        If so, a note says that they are not read.
+        """
         rest = self.items[self.index :]
         if not self.words(self.peek()) or any(item.text in SIGNS for item in rest):
             return False
@@ -271,10 +277,10 @@ class _Interpreter(CalculusPart):
         return True
 
     def head(self) -> Node | None:
-        r"""Read the head of a formula, such as ``R(\phi) =`` before the entries of a matrix; return the name R.
+        r"""Parse the left side of a definition, as ``R(\phi) =`` before the entries of a matrix; return the name R.
 
-        Brackets around the head, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such head: then
-        ``R(\phi)`` is a product.
+        Brackets around it, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such left side:
+        then ``R(\phi)`` is a product.
         """
         opened = 1 if self.at("[") else 0
         named = 2 if isinstance(self.peek(opened + 1), tree.Script) else 1
@@ -306,8 +312,8 @@ class _Interpreter(CalculusPart):
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
     """Yield the items of each line of an environment, and whether the line continues the line before it.
 
-    It does if it starts with a plus or minus sign and its first cell is empty or it has no relation sign. Spaces, and
-    commas and full stops at the end of a line, are left out.
+    It does if it starts with a plus or minus sign and, moreover, its first cell is empty or it has no relation
+    sign. Spaces, and commas and full stops at the end of a line, are left out.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]
@@ -319,7 +325,7 @@ def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
 
 
 def _texts(items: Sequence[tree.Node]) -> set[str]:
-    """Return the texts of items and of what is written inside them; ``table`` for each matrix."""
+    """Return the texts of items and of all items inside them; a matrix contributes the text ``table``."""
     texts: set[str] = set()
     for item in items:
         texts |= {item.text}

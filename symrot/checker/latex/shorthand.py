@@ -1,6 +1,6 @@
 r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
 
-They are read as functions only if the text has both a cosine and a sine in this form, and no c or s by itself.
+They are read as functions only if the text has both a cosine and a sine in this form, and neither c nor s alone.
 """
 
 import re
@@ -33,14 +33,17 @@ FEWEST_NUMBERED = 2
 
 
 class Shorthand(NamedTuple):
-    r"""A short form: its function, and the angles whose sum is the argument; empty if an angle follows it."""
+    r"""A short form of a cosine or sine: its function and the angles whose sum is the argument.
+
+    No angles are listed if the angle is the item that follows the letter, as in ``c\theta``.
+    """
 
     function: str
     angles: tuple[str, ...]
 
 
 def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[int, Shorthand]:
-    r"""Return the short forms of a LaTeX text: position of the letter c or s -> what it stands for.
+    r"""Return the short forms in a LaTeX text, each by the position of its letter, such as c or s.
 
     Parameters
     ----------
@@ -63,7 +66,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms with letters such as c and s, by position; empty if c or s is a name by itself."""
+    """Return the short forms that begin with a letter such as c or s, by position; none if c or s also occurs alone."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -86,7 +89,7 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; empty if the text has too few of them."""
+    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; none if the text has too few of them."""
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
     fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
@@ -103,7 +106,7 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, next to c_2 and s_3."""
+    r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, besides c_2 and s_3."""
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
         inner = pieces[place + 1 + grouped]
@@ -116,7 +119,7 @@ def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
 
 
 def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
-    r"""Return hypotheses without those that only say what a short form in a claim means: ``c\alpha = \cos\alpha``.
+    r"""Return hypotheses without those that only define a short form of the claim, as ``c\alpha = \cos\alpha`` does.
 
     Examples
     --------
@@ -129,7 +132,7 @@ def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
 
 
 def _after_power(pieces: Sequence[Token], place: int) -> int:
-    """Return the place after a power of one token, as in ``c^2_\\theta``, or the given place if there is no power."""
+    r"""Return the place after a power of one token, as in ``c^2_\theta``; return ``place`` if there is no power."""
     if pieces[place].text != "^" or place + 4 > len(pieces):
         return place
     is_group = pieces[place + 1].text == "{" and pieces[place + 3].text == "}"
@@ -145,7 +148,7 @@ def _is_angle(piece: Token) -> bool:
 
 
 def _subscript(pieces: Sequence[Token], place: int) -> str:
-    """Return the subscript that starts at a place if it is one Greek letter or a number, else an empty text."""
+    """Return the subscript that starts at a place, if it is one Greek letter or a number; otherwise an empty text."""
     grouped = pieces[place].text == "{"
     inner = pieces[place + grouped]
     if grouped and pieces[place + 2].text != "}":
@@ -154,7 +157,7 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the only Greek letter, or q, that has some of the digits as subscripts, as in ``\theta_1``.
+    r"""Return the only Greek letter, or q, that has some of the digits as subscripts: theta for ``\theta_1``.
 
     The letter is theta for a text without Greek letters, and an empty text if two letters have such subscripts.
     """

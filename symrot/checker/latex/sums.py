@@ -1,10 +1,13 @@
-"""Sums, products, powers, brackets and matrices in LaTeX: the order of operations."""
+"""Parsing sums, products, powers, brackets and matrices in LaTeX, by the order of operations."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
+from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
@@ -12,18 +15,19 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
+from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
 
 __all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
-    f"\\{command}": name
-    for command, name in (
-        *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
-        *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
+    f"\\{command}": ALIASES.get(command, command)
+    for command in (
+        "sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln", "tg", "ctg", "cosec", *DEFINED,
+        *(alias for alias, name in ALIASES.items() if name in DEFINED or name in ("asin", "acos", "atan")),
     )
-    if name in BUILT_IN
-}
+}  # fmt: skip
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
 LONGEST_MATRIX_NAME = 2
@@ -50,7 +54,7 @@ ENDS = frozenset([
 
 
 class SumsPart(Cursor):
-    """The methods of the LaTeX reader that read sums, products, powers, brackets and matrices."""
+    """The methods of the LaTeX reader that parse sums, products, powers, brackets and matrices."""
 
     vector: Callable[[str], Node]
     named: Callable[[str, Any], Node]
@@ -61,7 +65,7 @@ class SumsPart(Cursor):
     """Kind or text of an item -> the method of a further part that reads it."""
 
     def expression(self) -> Node:
-        """Read a sum and return its tree."""
+        """Parse a sum and return its tree."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING // 2:
             raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels")
@@ -101,18 +105,18 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def is_cross_matrix(self) -> bool:
-        """Return whether a cross is directly before a closing bracket: ``[a \\times]`` is a skew matrix."""
+        r"""Return whether a cross is directly before a closing bracket, as in the skew matrix ``[a \times]``."""
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Note that a name without a mark, or its rate, is that of a vector; the text is then read again."""
+        """Record that a name without a mark, or the name in a rate, is a vector; the text is then parsed again."""
         name = node.args[0].value if node.kind == "call" and node.value == "diff" else node.value
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
             self.crossed.add(str(name))
 
     def scalar_product(self, left: Node, right: Node) -> Node:
-        """Return the product with a dot of two vectors, of a vector and a tensor, or of two tensors."""
+        """Return the product that a dot means: of two vectors, of a vector and a tensor, or of two tensors."""
         if self.is_row(left):
             return Node("call", "dot", (Node("transpose", None, (left,)), right))
         if not (self.is_tensor(left) or self.is_tensor(right)):
@@ -124,12 +128,12 @@ class SumsPart(Cursor):
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
     def is_row(self, node: Node) -> bool:
-        """Return whether a tree is a vector times a tensor, ``a.T*I``."""
+        """Return whether a tree is a row vector times a tensor, ``a.T*I``."""
         factors = node.args if node.kind == "product" else ()
         return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
     def run(self) -> Node:
-        """Read factors with slashes but without product signs, as in ``a/b`` or ``1/2 m``; return their product."""
+        """Parse factors without product signs, perhaps with slashes, as ``a/b`` and ``1/2 m``; return their product."""
         factors = [self.factor()]
         divided: tree.Node | None = None
         while True:
@@ -151,9 +155,11 @@ class SumsPart(Cursor):
                 factors.append(self.factor())
 
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
-        """Read the formula after a slash, a factor or the product ``2m`` of ``p^2/2m``, and return its tree.
+        """Parse the divisor after a slash: one factor, or a product such as ``2m`` in ``p^2/2m``.
 
-        Also return whether the factors after the formula are certainly no part of it, as in ``1/2 m``.
+        Return its tree and a bool.
+
+        The bool is True if the factors after the divisor certainly do not belong to it, as m in ``1/2 m``.
         """
         first = self.peek()
         below = [self.factor()]
@@ -179,11 +185,11 @@ class SumsPart(Cursor):
         return not (self.integrals and self.differential())
 
     def differential(self) -> bool:
-        """Return whether a differential such as ``dx`` is at the cursor."""
+        """Return whether a differential such as ``dx`` is at the cursor; it ends an integrand."""
         return is_d(self.peek()) and is_letter(self.peek(1))
 
     def factor(self) -> Node:
-        """Read one factor with its exponents and return its tree."""
+        """Parse one factor with its exponents and return its tree."""
         if self.flips is not None and (derivative := self.leibniz()) is not None:
             return derivative
         item = self.next()
@@ -193,12 +199,12 @@ class SumsPart(Cursor):
                 raise self.fail("brackets around a repeated power", raised)
             is_function = node.kind == "call" and node.value in FUNCTIONS.values()
             if is_function and item.start not in self.short and self.flips is None:
-                raise self.fail(f"the power after the name, {item.text}^n(..)", raised)
+                raise self.fail(f"the power directly after the function, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return the tree of a node with an exponent: a power, a transpose, or the cross-product matrix of a vector."""
+        """Return a base with a raised sign as a tree: a power, transpose, conjugate or the skew matrix of a vector."""
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)
@@ -220,7 +226,7 @@ class SumsPart(Cursor):
         return Node("power", None, (node, exponent))
 
     def starred(self, node: Node) -> Node:
-        r"""Return the conjugate of a quaternion, or a name with a star, as in ``T^*``."""
+        r"""Return the tree of a quantity with a star: the conjugate of a quaternion, or a name such as ``T^*``."""
         products = any(sign in self.source for sign in QUATERNION_SIGNS)
         if node.kind != "name" or products or str(node.value)[:1] in QUATERNION_LETTERS:
             return Node("call", CONJUGATE, (node,))
@@ -240,11 +246,11 @@ class SumsPart(Cursor):
         raise self.fail("a group in braces", node)
 
     def is_cut(self, digit: tree.Node) -> bool:
-        """Return whether a digit is a part of a longer number without braces: LaTeX reads ``x^12`` as ``x^1 2``."""
+        """Return whether a digit belongs to a longer number without braces: LaTeX reads ``x^12`` as ``x^1 2``."""
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Read one factor without its exponents and return its tree."""
+        """Parse one factor without its exponents and return its tree."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":
@@ -256,7 +262,7 @@ class SumsPart(Cursor):
         return read(self, item)
 
     def matrix_name(self) -> Node | None:
-        r"""Read capital letters in square brackets, ``[FB]``; return one matrix name, or None for other brackets."""
+        r"""Parse capital letters in square brackets, ``[FB]``, as one matrix name; return None for other brackets."""
         texts = [item.text for item in self.items[self.index :]]
         end = texts.index("]") if "]" in texts else 0
         name, after = "".join(texts[:end]), self.peek(end + 1)
@@ -275,25 +281,46 @@ class SumsPart(Cursor):
         if isinstance(opening, tree.Row) and not opening.items and (frame := self.script("^") or self.script("_")):
             return self.framed(frame)
         if opening.kind == "row":
-            return self.inside(opening, self.expression)
+            return self.inside(opening, lambda: self.paired(self.expression(), "+"))
         if opening.text == "[" and (matrix := self.matrix_name()) is not None:
             return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
+        inner = self.paired(inner, "-" if opening.text == "[" else "+") if opening.text in ("[", "\\{") else inner
         crossed = opening.text == "[" and self.take("\\times")
         self.expect(CLOSING[opening.text])
         self.open_bars = bars
         mark = self.peek()
         if not crossed:
             is_cross = isinstance(mark, tree.Script) and tree.alone(mark.inside).text in ("\\times", "×")
+            if isinstance(mark, tree.Script) and mark.text == "_" and inner.value == "cross":
+                index, used = tree.alone(mark.inside).text, "".join(re.findall(r"_\{?(\w+)", self.source))
+                if (component := component_of_cross(inner.args, index, used)) is not None:
+                    self.next()
+                    return component
             if opening.text != "[" or not is_cross:
                 return inner
             self.next()
         self.note_vector(inner)
         return Node("call", "skew", (inner,))
 
+    def paired(self, first: Node, sign: str) -> Node:
+        r"""Read ``, B`` after A in ``[A, B]`` or ``\{A, B\}`` with Pauli's matrices; return the (anti)commutator."""
+        if not self.at(","):
+            return first
+        comma = self.next()
+        pair = commutator(first, self.expression(), sign)
+        if pair is None:
+            raise self.fail(
+                "a closing bracket (a commutator other than of Pauli's matrices is written A B - B A)", comma
+            )
+        return pair
+
     def framed(self, mark: tree.Script) -> Node:
-        r"""Read a name after its frame, ``{}^A R_B``; return its node, with the frames if there are several."""
+        r"""Parse a name after the mark of its frame, ``{}^A R_B``; return its node.
+
+        The frame becomes part of the name if the text has several frames.
+        """
         frame = tree.alone(mark.inside)
         while isinstance(frame, tree.Font):
             frame = tree.alone(frame.inside)

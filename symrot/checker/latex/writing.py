@@ -1,4 +1,4 @@
-"""LaTeX of claims: the formula as a book would print it, so that a question in LaTeX gets its answer in LaTeX."""
+"""Writing claims in LaTeX, as a book would print them: a question in LaTeX gets its answer in LaTeX."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -36,10 +36,10 @@ SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
 @dataclass(frozen=True)
 class LatexNotation:
-    """LaTeX as a notation for the formulas of a text, with the names of its functions of time and of its vectors.
+    """LaTeX as the notation for answers, with the names of the text's functions of time and vectors.
 
-    The value of a name in ``vectors`` is True if the vector has a hat. A formula is written as SymPy's text if the
-    LaTeX reader would not read the same formula from its LaTeX.
+    The value of a name in ``vectors`` is True if the vector has a hat. A formula is written in SymPy syntax if
+    parsing its LaTeX would not give the same formula.
     """
 
     functions: Collection[str] = ()
@@ -58,18 +58,18 @@ class LatexNotation:
         return latex_of(relation, self.functions, self.vectors) or f"{text(left)} {sign} {text(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return the LaTeX of an equation that is given as SymPy's text."""
+        """Return the LaTeX of an equation in SymPy syntax."""
         return latex_of_text(source, self.functions, self.vectors)
 
     def condition(self, source: str) -> str:
-        """Return the LaTeX of a condition that is given as SymPy's text."""
+        """Return the LaTeX of a condition in SymPy syntax."""
         return with_formulas(source, self.formula, SIGNS)
 
 
 def latex_of(
     relation: Relation, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS
 ) -> str | None:
-    """Return the LaTeX of an equation, or None if the reader would not read the same equation from it.
+    """Return the LaTeX of an equation, or None if parsing it would not give the same equation.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def latex_of(
 
 
 def latex_of_text(source: str, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS) -> str:
-    """Return the LaTeX of an equation in SymPy's text, or the text itself if :func:`latex_of` returns None.
+    """Return the LaTeX of an equation in SymPy syntax; return the text itself if :func:`latex_of` returns None.
 
     Words after the equation (``with ..``) stay unchanged.
     """
@@ -117,17 +117,17 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether a derivative is taken with respect to time only, with an order that dots can show."""
+    """Return whether all variables of a derivative are the time, and dots over a letter can show its order."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a formula is the scalar product of a formula with itself, whose root is a length."""
+    """Return whether a formula is the scalar product of a vector with itself, whose root is written as a length."""
     return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
 
 
 class Writer:
-    """Writer of LaTeX: it turns trees into text, in which functions of time have no ``(t)``."""
+    """A writer that turns trees into LaTeX, in which functions of time have no ``(t)``."""
 
     def __init__(self, timed: Collection[str], vectors: Mapping[str, bool]) -> None:
         self.timed, self.vectors = timed, vectors
@@ -170,7 +170,7 @@ class Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return the LaTeX of factors side by side; a divisor makes a fraction with the factor before it."""
+        """Return the LaTeX of factors side by side; a divisor becomes the denominator under the factor before it."""
         pieces: list[str] = []
         last = None
         for factor in node.args:
@@ -244,7 +244,7 @@ class Writer:
         return command + self.argument(node)
 
     def integral(self, node: Node) -> str:
-        """Return the LaTeX of an integral; the first range in the node is the innermost."""
+        """Return the LaTeX of an integral. The first range in the node is that of the innermost integral."""
         integrand, *ranges = node.args
         signs = [
             f"\\int_{{{self.formula(place.args[1])}}}^{{{self.formula(place.args[2])}}}" for place in reversed(ranges)

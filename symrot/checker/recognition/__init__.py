@@ -1,1 +1,1 @@
-"""Recognition of formulas: which of the formulas that symrot derives is equal to a given formula."""
+"""Recognition of formulas: finding the formula, among those that symrot derives, to which a formula is equal."""

@@ -1,7 +1,7 @@
-"""Formulas of vectors, matrices and quaternions with one usual fault undone, each with its values at some points.
+"""Usual faults in formulas of vectors, matrices and quaternions, each undone in turn, with values at some points.
 
 A wrong order of factors, a transpose or a missing square of a matrix changes all entries at once. The search for one
-wrong part of a formula does not see such faults; so whole formulas are compared here.
+wrong part of a formula does not see such faults; so whole edited formulas are compared here.
 """
 
 from bisect import bisect_left
@@ -30,7 +30,10 @@ LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
 
 
 class ArrayFault(NamedTuple):
-    """A formula without one fault: the edit, the sum of its entries at the first point, and its values."""
+    """A possible fault of a formula: the edit that undoes it, and the edited formula's values.
+
+    ``total`` is the sum of the entries at the first point, by which a list of faults is sorted.
+    """
 
     total: float
     edit: Edit
@@ -46,7 +49,10 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the formulas that follow from one edit of a formula with arrays, sorted by the sum of their entries."""
+    """Return the single edits of a formula with their values, sorted by the sum of the entries.
+
+    Of a formula without arrays, these are only the edits that add brackets.
+    """
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
     for edit in islice(edits, MOST_EDITS):
@@ -100,12 +106,12 @@ def _brackets(formula: Node) -> Iterator[Edit]:
 
 
 def _always(node: Node) -> Callable[[Node], Node]:
-    """Return the function that gives the same tree in place of any other."""
+    """Return a constant function of trees, whose value is always ``node``."""
     return lambda _: node
 
 
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
-    """Yield the squares of the matrices of a formula, and the matrices in place of their squares."""
+    """Yield edits of a formula that square one of its matrices, or remove the square of one."""
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
@@ -117,7 +123,7 @@ def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
-    """Yield the formula with one more conjugate, or one less, among the factors of its quaternion products."""
+    """Yield edits of a formula that add or remove the conjugate of one factor in a quaternion product."""
     for path, node in walk(formula):
         for place, factor in enumerate(node.args if node.kind == "call" and node.value == "qmul" else ()):
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
@@ -128,7 +134,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
 
 
 def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
-    """Yield the formula with one more scalar factor in a term: 1 - cos, a sine, a letter, or a bracket of it."""
+    """Yield edits that multiply a term by one more scalar: 1 - cos, a sine, a letter or a bracket of the formula."""
     scalars = [*_scalars(formula, numeric, letters)]
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
@@ -170,7 +176,7 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield the scalars by which a term may have to be multiplied."""
+    """Yield the scalars that may be missing as a factor of a term."""
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

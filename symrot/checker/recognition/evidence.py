@@ -1,4 +1,4 @@
-"""How well a known formula fits a claim: by the names, units, axes and letters of both, and what its context says."""
+"""How well a known formula fits a claim, judged by names, units, axes and letters, and by the context."""
 
 import re
 from collections.abc import Sequence
@@ -7,7 +7,8 @@ from itertools import pairwise
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
+from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
+from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.identification import plain_name, unit_of
 from symrot.checker.recognition.nearby import Near
@@ -133,37 +134,37 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a moment of inertia without an axis may be that of another body, which symrot does not have."""
+    """Return whether a claim I = .. names neither an axis nor a body, so that it may mean a body that symrot lacks."""
     is_bare = re.fullmatch("[IJ]", named.name) is not None
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
 
 def has_diameter(known: Identification) -> bool:
-    """Return whether the letter of a diameter, d or D, stands for the radius in the reading of a formula."""
+    """Return whether d or D, the letters of diameters, would stand for the radius of a known formula."""
     return any(old in ("R", "R_1", "R_2") and new[:1] in ("d", "D") for old, new in known.mapping.items())
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether a fault is a number or term in the moment of inertia of a body.
+    """Return whether a fault is a wrong number or term in the moment of inertia of a body.
 
-    Such a formula may be right for another body or, if its moment is larger, for a parallel axis.
+    Then the formula may be right for another body or, if its moment is larger, for a parallel axis.
     """
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a number that grows with contradictions between a known formula and a name, and with its rarity."""
+    """Return a number that grows if a known formula contradicts the name of a quantity, or if books rarely mean it."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether one of several words is in the name of a known formula; an angular velocity is no velocity."""
+    """Return whether a known formula's name has one of several words; an angular velocity is not a velocity here."""
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a formula near a known one is likelier to have a fault than to be another formula."""
+    """Return whether a formula near a known one is more likely to have a fault than to be another formula."""
     letters, words = names_in(named.formula), words_of(named)
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
@@ -208,7 +209,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim says that its quantity is the one of a known formula."""
+    """Return whether the context of a claim says that its quantity is the one that a known formula is for."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
@@ -220,7 +221,7 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether the angle or function of a component of a quaternion is wrong: beta_1 = e_1 sin(phi)."""
+    """Return whether the fault is the angle or function in a quaternion's component, as in beta_1 = e_1 sin(phi)."""
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (
@@ -245,7 +246,7 @@ def names_in(formula: Node) -> set[str]:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, by the name of the quantity and the units of its symbols."""
+    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols."""
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -254,17 +255,31 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
-    if not has_word(known.name, words) or not keeps_places(named, known):
+    if not has_word(known.name, words) or not keeps_places(named, known) or _is_of_other_angles(named, known):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
 
 
-def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether the entries, axes and kinds that names state agree with a known formula.
+def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
+    """Return whether a formula for an aircraft's rate p, q or r has an angle that is no roll, pitch or yaw."""
+    sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
+    if named.name not in RATES_OF_AIRCRAFT or sequence is None:
+        return False
+    if "space frame" in known.name:
+        return True
+    old_names = {plain_name(new).removeprefix("d"): old.removeprefix("d") for old, new in known.mapping.items()}
+    letters = {name.removeprefix("d") for name in names_in(named.formula)} & {*ANGLES}
+    places = {letter: ANGLES.index(old_names.get(letter, letter)) for letter in letters
+              if old_names.get(letter, letter) in ANGLES}  # fmt: skip
+    return not are_roll_pitch_yaw(sequence[1], places)
 
-    An entry of a rotation matrix keeps its row and column, or exchanges them. Of two parallel axes, the one through the
-    centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
+
+def keeps_places(named: NamedFormula, known: Identification) -> bool:
+    """Return whether a known formula agrees with the entries, axes and kinds of quantities in a claim's names.
+
+    An entry of a rotation matrix must have the same row and column, or exchanged ones. Of two parallel axes, the
+    one through the centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
     """
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
@@ -302,13 +317,13 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_reversed(name: str, known: Identification) -> bool:
-    """Return whether a velocity is named by r x omega, which has the wrong order."""
+    """Return whether a claim says v = r x omega, although velocities are omega x r."""
     second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
     return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether the quantity is an angular velocity with an index next to others: omega_2 next to omega_1."""
+    """Return whether the quantity is a component of an angular velocity: omega_2 in a formula that has omega_1 too."""
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
         re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in names_in(named.formula)
@@ -325,7 +340,7 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words, one of which must be in the name of a known formula for a quantity; None if any name will do."""
+    """Return words, one of which must be in the name of a known formula for the quantity; None if any name will do."""
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
         words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector
@@ -334,13 +349,13 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
 
 
 def quantity_name(named: NamedFormula) -> str:
-    """Return the name of a quantity; the name of its time derivative has a ``d`` in front."""
+    """Return the name of a quantity; a time derivative has a ``d`` in front of the name."""
     name, dots = re.subn("_?dot$", "", re.sub("_(plus|minus)$|(_prime)+$", "", named.name))
     return f"d{name}" if named.is_rate or dots else name
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Count the mismatches between a known formula and the name of a quantity: the component, the frame (0, 1 or 2)."""
+    """Count a known formula's contradictions to a quantity's name: one for another component, one for another frame."""
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip
@@ -350,9 +365,9 @@ def _misplaced(name: str, known: str) -> int:
 
 
 def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a known formula, larger if it is less plausible as the meaning of a claim.
+    """Return a sort key of a known formula: larger if the formula is a less plausible meaning of a claim.
 
-    The key counts a wrong component or frame, symbols with another axis, and symbols with new names.
+    The key counts a wrong component or frame, symbols with another axis, and renamed symbols.
     """
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
@@ -361,15 +376,15 @@ def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int
 
 
 def rarity_of(known: Identification) -> tuple[bool, int]:
-    """Return a sort key of a known formula: formulas that match without a change, such as a transpose, come first.
+    """Return a sort key of a known formula: smaller if it matches without a change, such as a transpose.
 
-    Among these, formulas with an Euler sequence that books use often come first.
+    Among equals, formulas with an Euler sequence that books use often come first.
     """
     return bool(known.how), _rank_of_sequence(known.name)
 
 
 def _rank_of_sequence(known: str) -> int:
-    """Return the rank, from 0 for the most usual, of the Euler sequence in the name of a known formula."""
+    """Return the rank of the Euler sequence in a known formula's name: 0 for the sequence that books use most."""
     sequences = [word for word in known.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
     return max(usual, default=0)

@@ -32,11 +32,11 @@ Values = tuple[int, ...]
 
 
 class NotInField(Exception):
-    """An exception for a formula that has no value in the finite field, at some point or at every point."""
+    """Exception for a formula that has no value in the finite field, at some point or at every point."""
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
-    """Return the entries at a point, modulo the prime.
+    """Return the values of a formula's entries at a point, modulo the prime.
 
     Raises
     ------
@@ -89,9 +89,9 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return the smaller of the two roots of a square in the field, so that equal radicands have equal roots.
+    """Return the smaller square root of a field element, so that equal formulas under roots have equal roots.
 
-    The negative of any other number is a square; its root is returned.
+    If the element is no square, its negative is one, and the root of the negative is returned.
     """
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     return min(root, PRIME - root)
@@ -106,15 +106,15 @@ def _power(base: int, exponent: Rational) -> int:
 
 
 def _mixed(value: int) -> int:
-    """Return a pseudorandom number made from a number: the parameter of the circle point of an angle.
+    """Return a pseudorandom number computed from a number; it is the parameter of the circle point of an angle.
 
-    It is scrambled so that it has no relation to the other values of a formula.
+    So the sine and cosine of an angle have no relation to its value elsewhere in a formula.
     """
     return pow(value + 1_000_003, 65_537, PRIME)
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return (cosine, sine) of a sum of multiples of angles."""
+    """Return (cosine, sine) of an argument that is a sum of multiples of angles."""
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
         coefficient, angle = term.as_coeff_Mul()
@@ -145,7 +145,8 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 class Fingerprint:
     """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
 
-    A signature holds the values of the formula's entries at a point where that atom has one value, all others another.
+    A signature holds the values of the formula's entries at a point where its atom has one value, all others
+    another.
     """
 
     atoms: tuple[Expr, ...]
@@ -153,18 +154,18 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with their entries in another order, scaled so that multiples have equal rows."""
+        """Return the signatures with their entries in another order, with equal rows for multiples of a formula."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the hash of the entries in the given order; it does not depend on names or on a constant factor."""
+        """Return the hash for a given order of the entries; it does not depend on names or on a constant factor."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the signatures of a formula at the first random point at which it has a value.
+    """Return the atoms of a formula with their signatures, computed at the first trial point where it has a value.
 
     Raises
     ------
@@ -192,7 +193,10 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula that has a value where all atoms are equal and moves with each of them."""
+    """Return the fingerprint of a formula of the usual kind; None for any other formula.
+
+    A formula of the usual kind has a value where all atoms are equal, and changes if any single atom changes.
+    """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
     here = _defined(entries, point)
@@ -208,9 +212,9 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of an atom in a formula such as x/(A - B), without a value where other atoms are equal.
+    """Return the signature of an atom in a formula without a value where its other atoms are equal, as x/(A - B).
 
-    It is a sum over all second atoms: of the values, where there are any, at points at which this one differs too.
+    It is the sum of the values at points where one more atom differs from the others, for each such second atom.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]
@@ -222,7 +226,7 @@ def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], 
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return the atoms (symbols, functions, derivatives) on whose values the value of a formula depends."""
+    """Return the atoms (symbols, functions, derivatives) on which the value of a formula depends."""
     for first, _ in DRAWS:
         point = {atom: pow(first, n * n + 2, PRIME) for n, atom in enumerate(atoms)}  # no cross product is zero
         here = _defined(entries, point)

@@ -74,7 +74,10 @@ LETTERS = {
 
 @dataclass(frozen=True)
 class View:
-    """A formula with its entries in another order: the change in words, the shape, and the order of the entries."""
+    """One arrangement of a formula's entries, such as the transpose.
+
+    ``how`` says in words how it differs from the formula; ``order`` gives the numbers of the entries.
+    """
 
     how: str
     shape: tuple[int, int] | None
@@ -89,7 +92,7 @@ def identify(
     Parameters
     ----------
     formula : str, Expr or Matrix
-        Text in the language of claims, LaTeX (text with a backslash), or a SymPy value.
+        Text in SymPy syntax or as typed, LaTeX (text with a backslash), or a SymPy value.
     most : int
         How many names to return at most.
     body, frame, sequence : str
@@ -141,7 +144,7 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree; each name in it becomes a symbol or a function of time, as its use tells.
+    """Return the SymPy value of a tree; its names become symbols or functions of time, as their use tells.
 
     ``define`` are the names with a definition, such as vectors with their components.
     """
@@ -153,7 +156,7 @@ def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = 
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
-    """Return notes that name the matrices of a claim: its sides, and the definitions that it uses."""
+    """Return notes with the names of known matrices in a claim: its sides, and the definitions that it uses."""
     return tuple(
         f"{place} is the {identification}"
         for place, value in _parts(claim)
@@ -163,7 +166,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    """Yield the sides of a claim and the definitions that it uses, each with words that name it in a note."""
+    """Yield the sides of a claim and the definitions that it uses, each with words for it, such as "the left side"."""
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)
@@ -190,9 +193,10 @@ def identified(
 ) -> Iterator[Identification]:
     """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
-    Steps of derivations are included only if ``steps``, products of few symbols only if the value is ``named``. In a
-    formula for a ``quantity``, given by its name, the axes and angles in the names of symbols keep their places. If
-    ``is_relation``, the value is the difference of the sides of an equation, and the known relations are searched.
+    Steps of derivations are included only if ``steps``. Products of few symbols are included only if the claim has
+    a name for the value (``named``). If ``quantity`` is the name of the value, axes and angles in the names of
+    symbols keep their places. If ``is_relation``, the value is the difference of an equation's sides, and known
+    relations are searched.
     """
     entries, shape = flatten(value)
     try:
@@ -219,16 +223,13 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return the number of changes, and of renamed symbols, that make a known formula equal to the given one.
-
-    Symbols with another first letter are counted last.
-    """
+    """Return a sort key of a match: the numbers of its changes, renamed symbols, and symbols with other initials."""
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield a formula as it is, transposed, and with the components of a quaternion in the other order."""
+    """Yield the arrangements of a formula to look up: as it is, transposed, with a quaternion's scalar stored last."""
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -248,7 +249,7 @@ def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
 
 
 def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
-    """Yield the entries of a symmetric tensor with its three axes in another order."""
+    """Yield the arrangements of a symmetric tensor with its three axes in another order."""
     if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
         return
     for axes in permutations(range(3)):
@@ -259,7 +260,7 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 
 @cache
 def known_value(text: str) -> Any:
-    """Return the SymPy value of the text of a known formula, whose names are real symbols."""
+    """Return the SymPy value of a known formula from its text; names become real symbols."""
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
@@ -280,7 +281,7 @@ def _matched(
     quantity: str | None,
     fits: Callable[[Identification], bool],
 ) -> Identification | None:
-    """Return the identification if the formula is proven equal to the known formula; otherwise None."""
+    """Return the identification of a formula as a known one, if the equality is proven; otherwise None."""
     theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(pairings(print_of, own, view.order), MOST_TRIES):
@@ -313,7 +314,7 @@ def _matched(
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether each name that a known formula and a claim have in common stands for the same quantity in both."""
+    """Return whether names that occur in both a known formula and a claim mean the same quantity in both."""
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
@@ -336,7 +337,7 @@ def plain_name(name: str) -> str:
 
 
 def _alike(mine: str, other: str) -> bool:
-    """Return whether two texts are names of the same thing, such as ``dphi`` and ``diff(phi(t), t)``."""
+    """Return whether two texts name the same quantity, such as ``dphi`` and ``diff(phi(t), t)``."""
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
@@ -345,7 +346,7 @@ def _factor_text(factor: Rational) -> str:
 
 
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways to pair the symbols of two formulas so that signatures agree, pairs of equal names first."""
+    """Yield the ways to pair the symbols of two formulas by equal signatures; equal names are paired first."""
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
         mine.setdefault(row, []).append(atom)
@@ -387,7 +388,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return the symbols ``others`` in an order in which each unit, axis and first letter fits that of ``atoms``.
+    """Return the symbols ``others`` in the order in which units, axes and first letters best fit those of ``atoms``.
 
     Equations with many symbols have more orders than can be tried.
     """
@@ -422,7 +423,7 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant factor by which two formulas differ, from their values at a point; None without such one."""
+    """Return the constant factor between two formulas, from values at a point; None if the ratio is not constant."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

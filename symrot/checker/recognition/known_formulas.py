@@ -45,10 +45,9 @@ FRAMES = ("body", "space")
 class Known:
     """A formula that symrot derives, with its name, its source and its text.
 
-    ``scaled``: a multiple of the formula has the same name. ``only_named``: it is a product of few symbols, such as
-    ``C*omega_3``, or a sum of any vectors, which is recognised only in a claim that names the quantity, in the letters
-    that books use. ``is_relation``: the formula is the
-    difference of the sides of an equation.
+    ``scaled``: a multiple of the formula has the same name. ``only_named``: the formula is a product of few
+    symbols, such as ``C*omega_3``, or a sum of any vectors; it is recognised only in a claim that names the
+    quantity, with the letters that books use. ``is_relation``: it is the difference of the sides of an equation.
     """
 
     name: str
@@ -60,12 +59,12 @@ class Known:
 
     @property
     def is_placed(self) -> bool:
-        """Whether the formula is for one axis or one matrix entry, so that its axes cannot be exchanged."""
+        """Whether the formula is for one certain axis or matrix entry, so that its axes must not be exchanged."""
         return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property
     def is_step(self) -> bool:
-        """Whether the formula is a side of a step of a derivation, without a name of its own."""
+        """Whether the formula is a side of a derivation's step; then it has no name of its own."""
         return ", step " in self.source
 
 
@@ -282,7 +281,7 @@ LEAST_OF_COMPONENT = 3
 
 
 def derived() -> Iterator[Named]:
-    """Yield both sides of the steps of all derivations."""
+    """Yield both sides of each step of all derivations."""
     for name in catalogue.names():
         derivation = catalogue.derivation(name)
         for number, step in enumerate(derivation.steps, start=1):
@@ -293,13 +292,13 @@ def derived() -> Iterator[Named]:
 
 
 def _solved() -> Iterator[Named]:
-    """Yield the relations of mechanics, solved for the quantities that books solve them for."""
+    """Yield the relations of mechanics, solved for the quantities for which books solve them."""
     for relation in relations():
         yield from solved(relation)
 
 
 def _related() -> Iterator[Named]:
-    """Yield the relations of mechanics as differences that are zero."""
+    """Yield the relations of mechanics as differences that are zero, each with its name."""
     for relation in relations():
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
@@ -311,7 +310,10 @@ SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentu
 def _selected(
     formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
 ) -> Iterator[tuple[str, Known]]:
-    """Yield (fingerprint, formula) for each formula of at least ``least`` symbols and at most ``longest`` letters."""
+    """Yield (key, formula) for the formulas that are long enough to be recognised and short enough for the file.
+
+    They have at least ``least`` symbols, and their texts at most ``longest`` characters.
+    """
     of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
     for name, source, value in formulas:
@@ -334,13 +336,13 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the ending of a known formula's name for a function of the quantity, such as ", squared"; or ''."""
+    """Return the end of a formula's name if it states a function of the quantity, such as ", squared"; otherwise ''."""
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 
 
 def relation_key(key: str, is_relation: bool) -> str:
-    """Return the key of a formula in the table: its fingerprint, with a mark if it is a relation."""
+    """Return the key of a formula in the table: its fingerprint, with ``=`` in front for a relation."""
     return f"={key}" if is_relation else key
 
 
@@ -357,7 +359,10 @@ def _is_general(entries: Sequence[Expr]) -> bool:
 
 
 def page(*groups: Iterator[Named]) -> str:
-    """Return the text of the file ``known_formulas.toml``; for a test, the text for some groups of formulas only."""
+    """Return the text of the file ``known_formulas.toml``.
+
+    A test may pass ``groups`` of formulas to print only these.
+    """
     lines = [
         "# What symrot derives, by fingerprint (checker/recognition/fingerprint.py), up to the names of symbols.",
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
@@ -381,7 +386,7 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the known formulas by their fingerprint, a hash that does not depend on the names of symbols."""
+    """Return the known formulas by their key, a hash that does not depend on the names of symbols."""
     formulas: dict[str, list[Known]] = {}
     for entry in tomllib.loads(FILE.read_text(encoding="utf-8"))["formula"]:
         formulas.setdefault(entry.pop("key"), []).append(Known(**entry))

@@ -30,7 +30,10 @@ MANY = 9
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses."""
+    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses.
+
+    Return None if too few points are found at which the formula has a value.
+    """
     numeric = NumericFilter(claim)
     short = claim.defining  # such as c1 = cos(alpha)
     defined_names = {**numeric.definitions, **short}
@@ -78,13 +81,13 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
 
 
 def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[str]:
-    """Return the names in definitions that are neither functions nor defined themselves."""
+    """Return the names in definitions that are neither functions nor defined by a definition."""
     names = {str(node.value) for tree in definitions.values() for _, node in walk(tree) if node.kind == "name"}
     return names - {"pi", *numeric.functions, *numeric.definitions}
 
 
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return the letters on which the value of a formula depends; a trace depends on three entries of a matrix."""
+    """Return the letters on which the value of a formula depends; a trace depends on three entries of its matrix."""
     if len(atoms) < MANY:
         return atoms
     here = values_of(formula, places[:1])
@@ -101,7 +104,7 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
 
 
 def pieces_of(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of the parts of a tree."""
+    """Return the identities (``id``) of all nodes in a tree."""
     return frozenset(id(node) for _, node in walk(tree))
 
 

@@ -20,11 +20,11 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim may mean a body with two equal moments of inertia, for one of which it lacks the letter.
+    """Return whether a claim may mean a body with two equal moments of inertia, and so has only one letter for them.
 
-    ``letter`` stands ``times`` times in the formula, once of them in the place of the absent symbol. Books give equal
-    moments the letter of the first: I_1 for I_1 = I_2, and I_2 for I_2 = I_3. The axis of a symmetric body is usually
-    the third; another axis is meant if the formula is written for equal moments: ``A p^2 + B (q^2 + r^2)``.
+    ``letter`` stands for the moment ``absent`` too, and ``times`` times in the formula. Books give equal moments the
+    letter of the first: I_1 for I_1 = I_2, and I_2 for I_2 = I_3. The axis of symmetry is usually the third; another
+    axis is meant if the formula is written for equal moments: ``A p^2 + B (q^2 + r^2)``.
     """
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
@@ -33,8 +33,8 @@ def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None],
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
     """Return whether values are those of a known moment of inertia plus m d^2, for a parallel axis at a distance d.
 
-    The distance is a simple fraction of one length in the claim, or has two such components. Values that are multiples
-    of the known ones are not shifted.
+    The distance is a simple fraction of one length in the claim, or has two such components. Values that are
+    multiples of the known ones are not shifted.
     """
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
@@ -58,7 +58,7 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the rational numbers k and l for which the added values are m (k a^2 + l b^2), as far as there are any."""
+    """Return the rational k and l for which the added values are m (k a^2 + l b^2); [None] if there are none."""
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip
@@ -77,5 +77,5 @@ def _are_squares(shares: Sequence[Fraction | None]) -> bool:
 
 
 def _is_square(share: Fraction) -> bool:
-    """Return whether a fraction is the square of a fraction."""
+    """Return whether a fraction is the square of another fraction."""
     return all(math.isqrt(number) ** 2 == number for number in (share.numerator, share.denominator))

@@ -1,4 +1,4 @@
-"""Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only name a quantity and give a formula for it.
+"""Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
 Nothing in such a claim defines the left side, so that nothing can be proven about it; but most formulas of books and
 papers look like this. The right side is compared with the formulas that symrot derives, each with its symbols renamed
@@ -93,6 +93,7 @@ MOST_READINGS = 4
 """The most formulas that one verdict names."""
 
 
+MINUS_PRODUCTS = "products of inertia are those with the minus sign, I_xy = -integral of x*y dm"
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
 SQUARED = ", squared"
@@ -100,7 +101,7 @@ SQUARED = ", squared"
 
 
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
-    """Return the verdict "recognised", "doubtful" or "definition" on a claim that names a formula.
+    """Return the verdict "recognised", "doubtful" or "definition" on a claim that gives a formula for a named quantity.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
-        return Verdict("recognised", recognised_as=readings)
+        return Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
     nearest = _nearest(claim, named) if repair else None
     if nearest is not None:
         return nearest
@@ -134,9 +135,9 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict by the rate matrix in ``omega = [matrix] q_dot``, in which nothing gives q_dot components.
+    """Return the verdict on ``omega = [matrix] q_dot`` by its matrix alone, if q_dot has no components in the claim.
 
-    Return None for other claims, and if the matrix is no matrix of rates.
+    Return None for other claims, and if the matrix is no rate matrix.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
@@ -166,7 +167,7 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
-    """Return the known formulas that match after a change of sign of the products of inertia.
+    """Return the known formulas that match after changing the sign of all products of inertia.
 
     Some authors define products of inertia as integrals without the minus sign.
     """
@@ -179,6 +180,17 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
             readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
             return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
     return ()
+
+
+def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
+    """Return a note on the convention for products of inertia, if the sign of one matters and nothing states it."""
+    names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
+    if not names or claim.context.sign_of_products or any("minus sign" in f"{k.name} {k.how}" for k in readings):
+        return ()
+    interpreter = claim.interpreter()
+    value, symbols = interpreter.read(named.formula), [interpreter.read(Node("name", name)) for name in names]
+    is_even = value == value.xreplace({symbol: -symbol for symbol in symbols})
+    return () if is_even else (MINUS_PRODUCTS,)
 
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
@@ -199,7 +211,10 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes an equation a known relation, solved for one of its letters."""
+    """Return the verdict "doubtful" if one change makes an equation a known relation; otherwise None.
+
+    The equation is solved for each of its letters in turn.
+    """
     if len(names_in(left) | names_in(right)) < LEAST_SYMBOLS_RELATED:
         return None
     atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
@@ -213,7 +228,7 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return a corrected equation, found solved for one letter, with each term on the side where the claim has it."""
+    """Return a repair with its terms on the same sides as in the claim; it was found for a solved form of the claim."""
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
@@ -221,7 +236,8 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 def _are_usable(claim: Claim) -> bool:
     """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
 
-    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known formulas.
+    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known
+    formulas.
     """
     short = claim.defining
     return all(
@@ -315,7 +331,7 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether the value of a formula does not depend on one of its letters, as that of ``1 + b/b`` does not."""
+    """Return whether a letter of a formula cancels, as b does in ``1 + b/b``."""
     try:
         value = claim.interpreter().read(tree)
     except InputError:
@@ -324,13 +340,13 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
-    """Return whether a formula is a known one once m_1 and m_2 are exchanged: the other mass is the heavier one."""
+    """Return whether exchanging m_1 and m_2 makes a formula a known one: then the other mass is the heavier one."""
     tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
 
 def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
-    """Return whether one of the formulas ``others`` is equal to the formula ``tree``."""
+    """Return whether the formula ``tree`` is equal to one of the formulas ``others``."""
     interpreter = claim.interpreter()
     value = interpreter.read(tree)
     return any(decide(value, interpreter.read(other)).verdict == "true" for other in others)
@@ -372,7 +388,7 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
-    """Return the known formulas to which a formula is equal and whose symbols fit the names in the claim.
+    """Return the known formulas that are equal to a formula and whose symbols fit the names in the claim.
 
     The likeliest formula comes first.
     """
@@ -390,7 +406,7 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that are equal to the equation of ``tree`` and the claim's side with the quantity."""
+    """Return the known relations that are equal to an equation: the claim's side with the quantity, and ``tree``."""
     difference = sum_of([named.side, negated(tree)])
     try:
         value = claim.with_definitions(claim.interpreter().read(difference))
@@ -411,14 +427,14 @@ def _readings_of_relation(
 
 
 def _has_root_of_sum(value: Any) -> bool:
-    """Return whether a formula has the root of a sum, as no known relation has."""
+    """Return whether a formula contains the root of a sum, which no known relation does."""
     return any(power.base.is_Add and not power.exp.is_Integer for power in value.atoms(Pow))
 
 
 def _readings_of_formula(
     claim: Claim, named: NamedFormula, formula: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known formulas for the quantity to which a formula for it is equal, the likeliest first."""
+    """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first."""
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
@@ -450,7 +466,10 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument of a root, acos, asin or atan2, and the ending of the names of formulas for it."""
+    """Return the argument if a value is a root, acos, asin or atan2, and the end of the names of formulas for it.
+
+    For sqrt(x), these are x and ", squared". Any other value is returned with an empty text.
+    """
     if is_matrix(value):
         return value, ""
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):

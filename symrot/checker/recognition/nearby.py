@@ -1,4 +1,4 @@
-"""Known formulas from which a claim differs by one fault: a numeric search, whose results remain to be proven.
+"""Known formulas that differ from a claim by one fault: a numeric search, whose results remain to be proven.
 
 For each known formula of the quantity that a claim names, the claim's formula should have the values of the known
 formula. :mod:`symrot.checker.recognition.parts` finds the single part, if there is one, that makes the values differ.
@@ -60,13 +60,14 @@ TIME = Node("name", "t")
 
 
 class Near(NamedTuple):
-    """A formula that is a single fault away from a claim's: the fault, its cost, the tree, and the known formula.
+    """A candidate for a repair: the formula ``tree`` is one change away from the claim's, and may be a known formula.
 
-    ``renamed`` is the number of symbols with new names. If ``has_other_unit``, the claim's formula has another unit
-    than the known one. If ``is_shifted``, it is the known moment of inertia plus m d^2, like one about a parallel axis.
-    If ``is_symmetric``, it is the known formula for equal moments of inertia. ``letter`` is the part that is changed,
-    if that is a symbol. ``array_letters`` is the number of components and other letters of a formula with vectors or
-    matrices, otherwise 0. ``renaming`` gives the texts of the claim's letters for the symbols of the known formula.
+    ``code`` and ``cost`` are those of the fault. ``renamed`` is the number of symbols with new names. If
+    ``has_other_unit``, the claim's formula has another unit than the known one. If ``is_shifted``, it is the known
+    moment of inertia plus m d^2, like one about a parallel axis. If ``is_symmetric``, it is the known formula for
+    equal moments of inertia. ``letter`` is the changed part, if that is a symbol. ``array_letters`` is the number
+    of components and other letters of a formula with vectors or matrices, otherwise 0. ``renaming`` gives the letters
+    of the claim for the symbols of the known formula.
     """
 
     cost: float
@@ -85,7 +86,7 @@ class Near(NamedTuple):
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
 
-    There is none if the formula has the values of a known one at the points, as it may by the hypotheses of the claim.
+    There is none if the hypotheses make the formula equal to a known one at the test points.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -134,7 +135,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum, by whose sign the look-up by fingerprint misses known formulas."""
+    """Return whether a formula has the root of a sum, which the look-up by fingerprint may miss by its sign."""
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 
@@ -147,7 +148,7 @@ def _quantity(named: NamedFormula) -> Node:
 
 
 def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
-    """Yield the known relations, solved for the symbols that a quantity may be, with these symbols."""
+    """Yield the known relations solved for each symbol that the claim's quantity may be, each with that symbol."""
     for name, known in solved_relations():
         if is_fitting(name, quantity, is_angle=False):
             yield name, known
@@ -174,7 +175,7 @@ def _known_pieces(known: Known) -> frozenset[int]:
 
 
 def _is_column(known: Known) -> bool:
-    """Return whether a known formula is for a vector or matrix."""
+    """Return whether a known formula is a vector or matrix."""
     return known.text.startswith("Matrix") and not ending_of(known.name).endswith("atan2")
 
 
@@ -189,10 +190,9 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula, and the variants of its parts by the usual faults, sorted by value at the first point.
+    """A claim's formula, with all variants of its parts that usual faults suggest, sorted by value at the first point.
 
-    ``arrays`` are the formulas that follow from one edit of the whole formula; ``values`` are the values of the formula
-    itself.
+    ``arrays`` are whole formulas after one edit; ``values`` are the values of the formula itself.
     """
 
     named: NamedFormula
@@ -203,7 +203,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part that have the values that the part should have."""
+        """Yield the variants of a part that have the values which the part should have."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -238,9 +238,9 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the formulas that result from one change, if a claim means a known formula under a renaming.
+    """Compare a claim with a known formula under a renaming; return the formulas that one change of the claim gives.
 
-    Return None if the claim has the values of that formula already.
+    Return None if the claim's formula has the known formula's values already.
     """
     named, letters = search.named, search.letters
     atoms = {text_of(atom): atom for atom in letters.atoms}
@@ -316,7 +316,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
-    """Return whether some part has a variant, or a multiple, with the values that it should have at two points."""
+    """Return whether a variant or multiple of some part has the values that the part should have at two points."""
     formula, at = search.named.formula, search.letters.points[:2]
     return any(
         is_absent(part) or is_multiple(part) or any(search.matching(part)) for part in parts(formula, at, needed[:2])
@@ -333,13 +333,13 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 
 def _repaired(formula: Node, path: Path, change: Change) -> Node:
-    """Return a formula with a changed part; its other numbers stay where they are."""
+    """Return a formula with a changed part; the numbers in its other parts are left as they are."""
     tree = flattened(replaced(formula, path, lambda _: change.made))
     return normalise_factors(tree) if change.code == "factor" else tree
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a known formula with the other sign of the products of inertia in it."""
+    """Yield the values of a known formula after changing the sign of the products of inertia in it."""
     names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if names:
         changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
@@ -349,7 +349,7 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield values unchanged and, for a matrix, also transposed, doubled, and with a quaternion's scalar last."""
+    """Yield values as they are and, for a matrix, also transposed, doubled, and with a quaternion's scalar last."""
     yield values
     if not is_matrix(values[0]):
         return
@@ -374,7 +374,7 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a formula has another unit than a known formula, if its letters have the known symbols' units.
+    """Return whether a claim's formula has another unit than a known one, if its letters have the known symbols' units.
 
     Both are evaluated before and after a change of the base units.
     """
@@ -411,7 +411,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which a quantity with a unit changes if the base units change; None without a unit."""
+    """Return the factor by which a quantity changes if its base units change; None if its unit is not known."""
     if unit is None:
         return None
     powers = read_unit(unit.partition(",")[0])

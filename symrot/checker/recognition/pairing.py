@@ -1,4 +1,4 @@
-"""Renamings of the symbols of a known formula to the symbols of a claim, where the claim may have a fault.
+"""Renamings of a known formula's symbols to the symbols of a claim that may have a fault.
 
 A fault can take one symbol out of a formula, or bring one in. So a renaming may leave out one symbol on each side. The
 letters, units, axes and angles of the names say which symbols may be the same quantity.
@@ -47,11 +47,10 @@ MOST = 6
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
-    """Return renamings of the names of a known formula, the most similar ones first.
+    """Return renamings of a known formula's names to names of a claim, the most similar ones first.
 
-    ``angles`` are those names of the claim that occur in sines and cosines.
-
-    A renaming gives each known name the name of a quantity of the claim, or None for one name that the claim lacks.
+    ``angles`` are those names of the claim that occur in sines and cosines. A renaming gives each known name the
+    name of a quantity of the claim, or None for one name that the claim lacks.
     """
     if abs(len(known) - len(own)) > 1:
         return []
@@ -92,7 +91,7 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
-    """Return the number of symbols to which a renaming gives another axis."""
+    """Return the number of symbols that a renaming moves to another axis."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
@@ -122,7 +121,7 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that extend a partial one, and None at each step, to count the steps."""
+    """Yield the complete renamings that extend a partial one; also yield None at each step, to count the steps."""
     yield None
     if not order:
         used = sum(other is not None for other in renaming.values())
@@ -141,7 +140,7 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether the names of a claim's quantity and of a known formula's quantity may mean the same."""
+    """Return whether a name in a claim and a name in a known formula may mean the same quantity."""
     name = plain_name(own)
     if known == name:
         return True

@@ -60,7 +60,7 @@ Values = tuple[Any, ...]
 
 
 class Part(NamedTuple):
-    """A part of a formula with its values, and the values that it should have."""
+    """A part of a formula with its values, and with the values that it should have."""
 
     path: Path
     node: Node
@@ -70,7 +70,7 @@ class Part(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The tree that should replace a part, with the code and the cost of the fault."""
+    """The tree that should replace a part, with the code and the cost of the fault that this corrects."""
 
     made: Node
     code: str
@@ -79,7 +79,7 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Letters:
-    """The symbols and rates of a formula, and the arguments of its angular functions, with their values.
+    """The symbols and rates of a formula, and the angles in its circular functions, with their values at test points.
 
     ``aliases`` are names that stand for a formula of the letters, such as c1 for cos(alpha).
     """
@@ -96,7 +96,7 @@ class Letters:
 
 @dataclass
 class PointOfLetters(Point):
-    """A point at which rates, such as ``diff(phi(t), t)``, and functions of time have values of their own."""
+    """A test point at which rates, such as ``diff(phi(t), t)``, have values of their own."""
 
     rates: Mapping[Node, float] = field(default_factory=dict)
 
@@ -109,14 +109,14 @@ class PointOfLetters(Point):
 
 
 def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
-    """Return a matrix of functions of time in which the derivative of each function replaces it."""
+    """Return a matrix in which the derivatives of its entries, which are functions of time, replace the entries."""
     if tree.kind == "call" and tree.args == (TIME,):
         return Node("call", "diff", (tree, *variables))
     return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
 
 
 def values_of(node: Node, points: Sequence[Point]) -> Values | None:
-    """Return the values of a tree at the points, or None if it has none at one of them."""
+    """Return the values of a tree at the points, or None if it has no value at one of them."""
     try:
         return tuple(point.value(node) for point in points)
     except UndefinedValue:
@@ -124,7 +124,7 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield the parts of a formula for which the values that they should have are determined, outer ones first."""
+    """Yield the parts of a formula whose right values follow from those of the whole formula, outer parts first."""
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
@@ -137,9 +137,9 @@ def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), 
 def _children(
     tree: Node, points: Sequence[Point], values: Values, needed: Values
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield the children of a part with their paths, each with the values that it should have.
+    """Yield the children of a part, each with its path and the values that it should have.
 
-    The values are None where nothing determines them.
+    The values are None if nothing determines them.
     """
     cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
     if cells:
@@ -167,7 +167,7 @@ def _children(
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
-    """Return the only row in which a column does not have the values that it should have; otherwise None."""
+    """Return the only row of a column vector whose values are wrong; None if there are several, or none."""
     pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
     wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
@@ -176,7 +176,10 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield the entries of the row of a matrix, in its product with a column, each as if it alone were wrong."""
+    """Yield (path, entry, values) for one row of a matrix that multiplies a column.
+
+    The values are those that the entry should have if it alone were wrong.
+    """
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
     columns = values_of(product(others), points) if place < len(tree.args) - 1 else None
@@ -212,7 +215,7 @@ def _of_product(arguments: Sequence[Any], place: int, needed: Any) -> Any:
 
 
 def _ratio(left: Any, right: Any) -> float | None:
-    """Return the number whose product with the right value is the left one; None if there is no such number."""
+    """Return ``left / right`` as one number, for scalars or proportional matrices; None if there is no such number."""
     if not is_matrix(left):
         return left / right if right else None
     pairs = list(zip(entries_of(left), entries_of(right), strict=True))
@@ -258,14 +261,14 @@ def is_absent(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether a part, or each of its entries, should be multiplied by one number other than 1."""
+    """Return whether a part, with all its entries, should be multiplied by one number other than 1."""
     ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
     first = ratios[0]
     return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
 
 
 def multiples(part: Part) -> Iterator[Change]:
-    """Yield the part with the other sign or with another number, if that gives it the values that it should have."""
+    """Yield the change of a part's sign or numeric factor that gives the part the values it should have."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return
@@ -285,14 +288,14 @@ def multiples(part: Part) -> Iterator[Change]:
 
 
 class Variant(NamedTuple):
-    """A change of a part that a fault may have made necessary, with the values of the changed part."""
+    """A change of a part that undoes a usual fault, with the values of the changed part."""
 
     change: Change
     values: Values
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part of a formula by usual faults, with the values of the changed part."""
+    """Return the changes of a part that undo usual faults, each with the values of the changed part."""
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):
         return []
@@ -303,7 +306,7 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield, as replacements of a symbol, all other symbols of the formula."""
+    """Yield all other symbols of the formula as replacements of a symbol."""
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
         return
@@ -315,7 +318,7 @@ def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Ite
 
 
 def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the part with other exponents; for a divisor, yield it as a factor."""
+    """Yield the part with other exponents; a divisor is also yielded as a factor."""
     base, exponent = node, Fraction(1)
     if node.kind == "power" and node.args[1].kind == "number":
         base, exponent = node.args[0], node.args[1].value
@@ -335,7 +338,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the other angular functions of the same angle, and the same function of other angles."""
+    """Yield the other circular functions of the same angle, and the same function of other angles."""
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args
@@ -354,7 +357,7 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield a term or bracket multiplied or divided by one more symbol or function."""
+    """Yield a term or bracket that is multiplied or divided by one more symbol or function."""
     if parent in ("product", "power", "inv") or node.kind in ("neg", "inv", "number"):
         return
     if node.kind == "product":
@@ -412,7 +415,7 @@ def _powered(term: Node, base: Node, power: int) -> Node:
 
 
 def _exchanged(tree: Node, angle: Node) -> Node:
-    """Return a tree with sine in place of the cosine of an angle, and the other way round."""
+    """Return a tree in which the sine and the cosine of an angle are exchanged."""
     if tree.kind == "call" and tree.value in OPPOSITE and tree.args == (angle,):
         return replace(tree, value=OPPOSITE[tree.value])
     return replace(tree, args=tuple(_exchanged(child, angle) for child in tree.args))
@@ -422,7 +425,7 @@ _VARIANTS = (_of_letter, _of_exponent, _of_function, _of_factor, _of_terms)
 
 
 def rational(values: Sequence[float]) -> Fraction | None:
-    """Return the simple rational number to which all values are equal, or None if there is none."""
+    """Return the simple rational number that all values are equal to, or None if there is none."""
     first = values[0]
     if not math.isfinite(first) or not 1e-4 < abs(first) < 1e4:
         return None

@@ -1,7 +1,7 @@
 """Relations between quantities that books solve for one quantity or another, each derived from the laws of motion.
 
-A relation says that a difference is zero. It is recognised as it is, and solved for each quantity that it gives as one
-formula: the condition of steady precession gives the spin, the torque and the moments of inertia.
+A relation says that a difference is zero. It is recognised as it is, and solved for each quantity for which that gives
+a single formula: the condition of steady precession gives the spin, the torque and the moments of inertia.
 """
 
 from collections.abc import Iterator
@@ -56,7 +56,7 @@ HEAVY, FREE, ROLLING, PLANE, WHEEL, PENDULUM, EULER, AXIS = (
 
 
 def _new(name: str, unit: str) -> Symbol:
-    """Return a symbol that :mod:`symrot.symbols` does not have, with its unit."""
+    """Create a symbol that :mod:`symrot.symbols` does not have, record its unit, and return it."""
     symbol = Symbol(name, real=True)
     OTHERS[symbol] = unit
     return symbol
@@ -77,7 +77,7 @@ WORK = _new("W_k", "J")
 
 
 class Relation(NamedTuple):
-    """A difference of two formulas that is zero, with a name and the derivation that it comes from.
+    """A relation of mechanics as a difference that is zero, with its title and the derivation that it comes from.
 
     ``words`` gives, for each symbol for which the relation is solved, the first words of that formula's name.
     """
@@ -120,9 +120,10 @@ def terms_expanded(formula: Expr) -> int:
 
 
 def primitive(difference: Expr) -> Expr:
-    """Return the numerator of a difference without factors that are powers of symbols or functions, and without sign.
+    """Return the numerator of a difference without a common factor that is a number or a power of a symbol or function.
 
-    Equations that differ by such a factor on both sides, or by a denominator, have the same primitive difference.
+    Equations that differ by such a factor on both sides, or by a denominator, have the same primitive difference,
+    perhaps with another sign.
     """
     numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
     try:
@@ -132,7 +133,7 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference times powers of symbols and functions, so that none divides a term or is a factor of all.
+    """Return a difference whose terms have no symbol or function as a common factor or as a divisor.
 
     Up to a constant factor it is what :func:`primitive` returns, which is slower, because it multiplies out.
     """
@@ -145,7 +146,7 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols and functions that all terms of a formula have in common, in divisors too.
+    """Return the powers of symbols and functions that all terms of a formula have in common; negative for divisors.
 
     The result is None for a formula with roots, or with another divisor than a product of such powers.
     """
@@ -184,7 +185,7 @@ def relations() -> Iterator[Relation]:
 
 
 def _one_axis() -> Iterator[Relation]:
-    """Yield the relations of rotation about a fixed axis: work, constant acceleration, springs, percussion."""
+    """Yield the relations of rotation about a fixed axis: work, constant acceleration, springs, percussion centres."""
     energy = C * SPIN**2 / 2
     (moment,) = solve(energy.diff(SPIN) - symbols.H, C)
     by_momentum = ENERGY - energy.subs(C, moment)
@@ -290,13 +291,13 @@ def _trace() -> Iterator[Relation]:
 
 
 def _top() -> tuple[Matrix, Expr]:
-    """Return the angular velocity of a top without its spin angle, and the kinetic energy of a symmetric top."""
+    """Return the angular velocity of a top at zero spin angle, and the kinetic energy of a symmetric top."""
     omega = (rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)).subs(PSI, 0)
     return omega, HALF * omega.dot(diag(A, A, C) * omega)
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield conditions of steady precession, for a weight and for a torque, with the spin or the spin angle's rate."""
+    """Yield conditions of steady precession under a weight or torque, with the spin or the rate of the spin angle."""
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):
@@ -331,7 +332,7 @@ def _by_spin(formula: Expr) -> Expr:
 
 
 def _heavy() -> Iterator[Relation]:
-    """Yield the energy of a heavy top by its spin, its equation of nutation, and the vertical component of momentum."""
+    """Yield the energy of a heavy top by its spin, its equation of nutation, and its vertical angular momentum."""
     omega, kinetic = _top()
     turned = kinetic.subs(DPSI, SPIN - DPHI * cos(THETA))
     yield Relation("a symmetric top", HEAVY, ENERGY - expand(turned), {ENERGY: "kinetic energy of"})
@@ -364,7 +365,7 @@ def _heavy() -> Iterator[Relation]:
 
 
 def _free() -> Iterator[Relation]:
-    """Yield the relations of a free body: energy and momentum, its stability, and the angles of a symmetric one."""
+    """Yield the relations of a free body: energy and momentum, stability, and the angles of a symmetric body."""
     momentum = diag(A, B, C) * OMEGA
     H, E = symbols.H, symbols.E
     square, energy = momentum.dot(momentum), OMEGA.dot(momentum) / 2
@@ -420,7 +421,7 @@ def _free() -> Iterator[Relation]:
 
 
 def _planar() -> Iterator[Relation]:
-    """Yield the torques that hold the axis of a body which rotates about z, with products of inertia."""
+    """Yield the torques that keep the axis fixed, for a body that rotates about z and has products of inertia."""
     about, rate = Matrix([0, 0, symbols.omega_3]), Matrix([0, 0, symbols.domega_3])
     needed = TENSOR * rate + about.cross(TENSOR * about)
     for torque, value in zip(symbols.torque_b, needed, strict=True):
@@ -428,7 +429,7 @@ def _planar() -> Iterator[Relation]:
 
 
 def _aircraft() -> Iterator[Relation]:
-    """Yield Euler's equations of a body whose x-z plane is a plane of symmetry."""
+    """Yield Euler's equations of a body with the x-z plane as its plane of symmetry."""
     tensor = TENSOR.subs({symbols.I_xy: 0, symbols.I_yz: 0})
     rates = Matrix(symbols.omega_rates)
     needed = tensor * rates + OMEGA.cross(tensor * OMEGA)

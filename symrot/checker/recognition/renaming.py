@@ -1,7 +1,7 @@
 """Renamings of the symbols of a known formula that respect the axes and angles in the names of the symbols.
 
-``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` is Euler's equation if I_2 is renamed I_3 and I_3 is renamed I_2, but no
-reader means that: omega_2 and omega_3 keep their axes.
+``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` becomes Euler's equation by exchanging I_2 and I_3, but no author means
+that: omega_2 and omega_3 keep their axes.
 """
 
 import re
@@ -35,7 +35,7 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether a renaming, pairs of a known and a new name, keeps axes together and angles with their rates.
+    """Return whether a renaming, pairs of a known and a new name, keeps the axes together and each angle with its rate.
 
     If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
     """
@@ -54,7 +54,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether the new names of an earlier and a later value have increasing numbers: omega_1 and omega_2."""
+    """Return whether the new names of an earlier and a later value have increasing numbers: omega_1, omega_2."""
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -63,7 +63,10 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [(component of a known formula, name of a quantity)], as for a renaming; or an empty list."""
+    """Return the pair (component that a known formula is for, name of the quantity) to add to a renaming, in a list.
+
+    The list is empty if either has no component.
+    """
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
@@ -75,7 +78,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 @cache
 def _angle(name: str) -> str:
-    """Return the quantity to which a name belongs: phi for its rate dphi and for phi(t); other names stay unchanged."""
+    """Return the quantity to which a name belongs: phi for its rate dphi and for phi(t); other names are unchanged."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
@@ -94,12 +97,12 @@ def axes_of(name: str) -> frozenset[int]:
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether all entries of a rotation matrix stay in their places, or all move as in the transpose."""
+    """Return whether all entries of a rotation matrix keep their places, or all move as in the transpose."""
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether an order of the three axes turns each known axis into the new one."""
+    """Return whether a permutation of the three axes maps the axes of each known name to those of its new name."""
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

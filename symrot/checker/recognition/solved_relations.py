@@ -1,7 +1,7 @@
-"""Equations solved for one of their letters, as trees: known relations, and claims that are equations.
+"""Equations solved for one of their letters, as trees: known relations, and claims.
 
 The search for faults compares formulas for one quantity. A relation such as ``I w1 + M t = I w2`` has such a formula
-for each letter in which it is linear, or which it has as a square only.
+for each letter in which it is linear, or which it has only as a square.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,14 +19,14 @@ SQUARED = ", squared"
 
 
 class SolvedRelation(NamedTuple):
-    """A known relation, solved for the symbol ``name``, as a known formula for it."""
+    """A known relation that is solved for the symbol ``name``: ``known`` is the formula for this symbol."""
 
     name: str
     known: Known
 
 
 class Solution(NamedTuple):
-    """An equation ``coefficient * letter**exponent == rest``."""
+    """An equation solved for a letter, in the form ``coefficient * letter**exponent == rest``."""
 
     letter: Node
     coefficient: Node
@@ -36,7 +36,7 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return every known relation once for each symbol for which it can be solved."""
+    """Return every known relation solved for each symbol for which that is possible."""
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
         tree = read_expression(known.text)
@@ -50,7 +50,7 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
-    """Yield an equation solved for each of the given letters and rates in which it, or their square, is linear.
+    """Yield an equation solved for each of the letters and rates ``atoms`` in which it, or their square, is linear.
 
     The letter stays on a side of its own with its factor: ``I*w2 == I*w1 + M*t``.
     """
@@ -69,10 +69,10 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the sides of an equation after a change of its solved form, for which one term became another one.
+    """Carry a change of an equation's solved form over to the equation; return its sides.
 
-    ``tree`` is the changed formula of ``named``, which :func:`solved_claims` returned. The result is None if more than
-    one term changed.
+    ``tree`` is the changed formula of ``named``, which :func:`solved_claims` returned. The result is None if more
+    than one term changed.
     """
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]
@@ -85,7 +85,7 @@ def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[
 
 
 def _solve(coefficient: Node, exponent: int) -> Solve:
-    """Return the function that turns a formula for the side with a letter into a formula for the letter."""
+    """Return a function from a formula for ``coefficient * letter**exponent`` to a formula for the letter."""
 
     def solved(formula: Node) -> Node:
         quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula
@@ -99,7 +99,7 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Return a sum of terms, which is zero, solved for a letter; None if this cannot be read off its terms."""
+    """Solve ``sum of terms == 0`` for a letter; None if no term-by-term solution exists."""
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]
@@ -110,7 +110,7 @@ def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
 
 
 def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
-    """Return a term without a factor that is a letter or its square, with its exponent; None if it has none."""
+    """Return a term without its factor that is a letter or its square, and the exponent; None without such a factor."""
     if term.kind == "neg":
         inner = _without(term.args[0], letter)
         return None if inner is None else (negated(inner[0]), inner[1])

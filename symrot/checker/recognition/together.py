@@ -1,4 +1,4 @@
-"""Formulas for the components of one vector or tensor, line by line: are they of one body, frame and sequence?"""
+"""Whether formulas for components of one vector or tensor, on several lines, are of one body, frame and sequence."""
 
 import re
 from collections.abc import Collection, Iterator, Sequence
@@ -13,11 +13,11 @@ PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axi
 
 
 def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
-    """Return whether recognised lines have readings as components of one quantity.
+    """Return whether several recognised lines can be the components of one quantity.
 
-    A line is given by the name of its left side, the names in its formula, and its verdict. Lines for omega_x, omega_y,
-    .. fit together if the names of their readings differ in the component alone, no two lines name the same component,
-    and each letter stands for the same quantity in all of them.
+    A line consists of the name of its left side, the names in its formula, and its verdict. Lines for omega_x,
+    omega_y, .. fit together if the names of their known formulas differ in the component alone, no two lines name
+    the same component, and each letter stands for the same quantity in all of them.
     """
     groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
     for name, letters, verdict in lines:
@@ -35,7 +35,7 @@ def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]
 
 
 def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
-    """Return whether formulas, one from each line, are different components of one quantity."""
+    """Return whether known formulas, one for each line, are different components of one quantity."""
     places = [tuple(_places(known.name)) for known, _ in choice]
     if not all(places):
         return True

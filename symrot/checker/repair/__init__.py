@@ -1,1 +1,1 @@
-"""The diagnosis of a false claim: its probable fault, and the true formulas nearest to it."""
+"""The diagnosis of a false claim: its probable fault, and the true formulas (repairs) nearest to it."""

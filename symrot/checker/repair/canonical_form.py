@@ -1,4 +1,4 @@
-"""The canonical form of a tree, which is equal for formulas that differ only in the order of terms and factors."""
+"""The canonical form of a tree: formulas that differ only in the order of terms and factors have the same form."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,13 +10,13 @@ __all__ = ["canonical", "terms_of_equation", "with_ordered_products"]
 
 
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with sorted terms and scalar factors; numbers come first, with the signs in front of them.
+    """Return a tree with sorted terms and scalar factors; a number with its sign comes first in a product.
 
     Parameters
     ----------
     node : Node
     is_matrix : function
-        Whether a piece is a matrix; matrices in a product stay in their order.
+        Tells whether a node is a matrix; matrices in a product stay in their order.
     """
     args = [canonical(child, is_matrix) for child in node.args]
     if node.kind == "sum":
@@ -33,7 +33,7 @@ def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
 
 
 def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
-    """Return the base of a factor and its exponent, a number; an exponent with letters stays in the base."""
+    """Return the base of a factor and its numeric exponent; an exponent with letters remains a part of the base."""
     if factor == Node("call", "sqrt", factor.args):
         base, exponent = _base_and_exponent(factor.args[0])
         return base, exponent / 2
@@ -47,7 +47,7 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree in which scalars stand before scalar and vector products, with the factors of these in order."""
+    """Return a tree in which scalars are taken out of dot and cross products, and the vectors in these are sorted."""
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)
     if tree.kind != "call" or tree.value not in ("dot", "cross"):
@@ -68,10 +68,10 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 
 
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
-    """Return the terms of ``left - right`` with their numbers, equal terms collected, scaled so that one number is 1.
+    """Return the terms of ``left - right``, each with its coefficient; equal terms are collected.
 
-    It is empty if both sides are the same formula, and equal for equations that differ by moving terms from one side
-    to the other, or by a number or sign on both sides.
+    One coefficient is scaled to 1. The result is empty if both sides are the same formula. It is equal for
+    equations that differ only by moving terms from one side to the other, or by a number or sign on both sides.
     """
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
@@ -84,7 +84,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
 
 
 def _without_number(term: Node) -> tuple[Node, Fraction]:
-    """Return a canonical term without the number in front of it, and this number."""
+    """Split a canonical term into the term without its numeric coefficient, and that coefficient."""
     if term.kind == "neg":
         core, size = _without_number(term.args[0])
         return core, -size

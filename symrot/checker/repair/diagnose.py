@@ -1,9 +1,8 @@
-"""The diagnosis of a claim that is not true, and the true formulas nearest to it: search, numeric test, proof.
+"""The diagnosis of a claim that is not true: a search for true formulas near it, by a numeric test and a proof.
 
 Candidates are formulas with one or two edits, and formulas with one part replaced by the value that makes the claim
 true. A candidate must be true at two points in double precision; then the exact engine decides it, and only proven
-candidates are offered as repairs. The work is bounded by counts instead of times, so that every run gives the same
-repairs.
+candidates are offered as repairs. The work is bounded by counts, not by time, so that every run gives the same repairs.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -64,7 +63,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     claim : Claim
         An equation.
     decision : Decision
-        The decision on it, ``"false"`` or ``"conditional"``.
+        The decision on the claim, ``"false"`` or ``"conditional"``.
     """
     if 4 * decision.products > MOST_EXPANDED:
         text = f"the formula is too large to look for repairs: it took {decision.products} products of terms to expand"
@@ -80,7 +79,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
 
 
 class _Search:
-    """The search for repairs of one claim, with the candidates so far."""
+    """The search for repairs of one claim, with the candidates that it has found so far."""
 
     def __init__(self, claim: Claim, decision: Decision) -> None:
         self.numeric = NumericFilter(claim)
@@ -124,7 +123,7 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further repairs with the values of the given ones but another form, if they cost about as little."""
+        """Return other ways of writing the repairs in ``repairs``, if they are about as near to the claim."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -139,11 +138,11 @@ class _Search:
         return others
 
     def canonical_form(self, changes: Sequence[Change]) -> tuple[Node, ...]:
-        """Return the trees of a repaired claim, with terms and scalar factors in a canonical order."""
+        """Return the trees of a repaired claim in canonical form: their terms and scalar factors are sorted."""
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
 
     def equation_form(self, changes: Sequence[Change]) -> Any:
-        """Return a repaired claim with its terms collected: equal for repairs that only move terms."""
+        """Return the collected terms of a repaired claim, equal for repairs that only move terms between sides."""
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
         left, right = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
@@ -167,7 +166,7 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield pairs of edits in different parts of the claim that make it true at the test points.
+        """Yield candidates with two edits, in different parts of the claim, that are true at the test points.
 
         Their number is limited by the budget of the search.
         """
@@ -183,7 +182,8 @@ class _Search:
     def is_tautology(self, changes: Sequence[Change]) -> bool:
         """Return whether an edit made both sides the same formula, so that the edited claim says nothing.
 
-        If one side may not be edited, it is the result to reach: then the other side may become the same formula.
+        If one side must not be edited, it is the result to be reached: then the sides may become the same
+        formula.
         """
         if len(self.numeric.sides_to_edit) < len(SIDES):
             return False
@@ -193,7 +193,7 @@ class _Search:
     def cancels(self, equation: Equation) -> bool:
         """Return whether one repaired side cancels to a number, such as ``x/(x/y)/y``, or both do, as in ``x/x == 1``.
 
-        A side that becomes zero does not count.
+        Such a repair says nothing. A side that becomes zero does not count.
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
@@ -201,7 +201,7 @@ class _Search:
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return the first candidates that the exact engine proves, at most ``most``, no two with the same value."""
+        """Return up to ``most`` repairs: the first candidates that are proven, without two of equal value."""
         repairs: list[Repair] = []
         attempts = 0
         bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})
@@ -245,7 +245,7 @@ class _Search:
 
 
 def _ranges(decision: Decision) -> str:
-    """Return the range of angles or signs in which a conditional formula holds; empty for any other decision."""
+    """Return the range, of angles or signs, in which a conditional formula holds; empty for any other decision."""
     needed = decision.requires[:1]
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)
     return needed[0].text if needed and is_range else ""

@@ -1,6 +1,6 @@
 """Dual numbers, and elementary functions of numbers, arrays and dual numbers.
 
-A formula is differentiated by evaluating it at dual numbers ``x + x' e`` with ``e^2 = 0``.
+Evaluating a formula at dual numbers ``x + x' e`` with ``e^2 = 0`` also differentiates it.
 """
 
 import math
@@ -16,7 +16,7 @@ __all__ = [
 
 
 class UndefinedValue(ValueError):
-    """An exception for a formula without a value, for example the root of a negative number, or an unknown name."""
+    """Exception raised if a formula has no value, for example for the root of a negative number, or an unknown name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def minus(x: Any) -> Any:
 
 
 def _plainly(function: Any, x: Any) -> Any:
-    """Return the value of a function at a number, or at each number of an array."""
+    """Return the value of an elementary function at a number, or its values at the numbers of an array."""
     return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
 
 
@@ -89,14 +89,14 @@ def square_root(x: Any) -> Any:
 
 
 def absolute(x: Any) -> Any:
-    """Return the absolute value."""
+    """Return the absolute value of x."""
     if isinstance(x, np.ndarray):
         return np.abs(x)
     return -x if plain(x) < 0 else x
 
 
 def plain(x: Any) -> float:
-    """Return the real part of a dual number, whose real part may itself be a dual number."""
+    """Return a dual number without its slope, as a float; nested dual numbers are reduced too."""
     while isinstance(x, Dual):
         x = x.value
     return float(x)

@@ -1,7 +1,7 @@
-"""The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree with a code and a cost.
+"""The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree; each has a code and a cost.
 
-An edit changes one part of a formula; the more likely its fault is, the smaller is its cost. ``single_edits`` yields
-all edits of a tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which results are true.
+An edit changes one part of a formula. It costs less if its fault is more likely. ``single_edits`` yields all edits of a
+tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which results are true.
 """
 
 import itertools
@@ -66,7 +66,8 @@ COST = {
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "name_transposed": 0.02,
     "rows_as_columns": 0.01, "names_exchanged": 0.1, "root_left_out": 0.1,
-    "cross_product_order": 0.02, "whole_cross_product_order": -0.04, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "cross_product_order": 0.02, "whole_cross_product_order": -0.04,
+    "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
     "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
     # one fault everywhere in a tree
     "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
@@ -108,7 +109,7 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 @dataclass(frozen=True)
 class Edit:
-    """A changed tree, with the code and the cost of the change; ``path`` leads to the changed part."""
+    """A changed tree, with the code of the corrected fault and the cost; ``path`` leads to the changed part."""
 
     code: str
     cost: float
@@ -117,7 +118,7 @@ class Edit:
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return the names with which a name is easily confused: other indices, other case, the same family."""
+    """Return the names that are easily confused with a name: with another index, other case, or of the same family."""
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
@@ -139,19 +140,19 @@ def single_edits(
     moving: bool,
     opened: Callable[[Path], bool] = lambda path: True,
 ) -> Iterator[Edit]:
-    """Yield every single edit of a tree. Edits that change all occurrences of a name or angle come first.
+    """Yield every single edit of a tree; edits that change all occurrences of a name or angle come first.
 
     Parameters
     ----------
     tree : Node
     names, functions : collection of str
-        Symbols and definitions, and functions of time, that may have been confused with each other.
+        Symbols and definitions, and functions of time; an edit may exchange them for each other.
     matrices : function
-        Whether a piece is a matrix.
+        Tells whether a node is a matrix.
     moving : bool
         Whether the claim contains a derivative: an exchanged order of factors then means exchanged frames.
     opened : function
-        Whether the piece at a path may be changed.
+        Tells whether the part at a path may be changed.
     """
     yield from _everywhere(tree, matrices)
     order = "frame_body_space" if moving else "commutator_order"
@@ -173,19 +174,19 @@ def single_edits(
 
 
 def _has_values(node: Node) -> bool:
-    """Return whether the arguments of a function are values that may lack a square, such as entries of a matrix."""
+    """Return whether a node is a matrix or a root: a square may be missing on an entry or under the root."""
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
 def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a letter, a length or another function whose square may be missing."""
+    """Return whether a part is a letter, a length or another scalar call, of which a square may be missing."""
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
     return not matrices(node) or node.value in ("dot", "det", "trace")
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree in which a part is replaced, with signs in front and sums inside of sums merged."""
+    """Return a tree with ``made`` in place of the part at a path. Signs move to the front; nested sums are merged."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -209,7 +210,7 @@ def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
     matrices: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[Change]:  # fmt: skip
-    """Yield the edits of the part at a path; ``lone`` says that the part is an entry of a matrix or a list."""
+    """Yield the edits of the part at a path. ``lone`` is True for an entry of a matrix or list."""
     if node.kind == "sum":
         yield from _of_sum(node, matrices)
     elif node.kind == "product":
@@ -244,7 +245,7 @@ def _changes(
 
 
 def _of_rows(node: Node) -> Iterator[Change]:
-    """Yield the transpose of a square matrix that is given by its rows."""
+    """Yield the transpose of a square matrix whose rows are written out."""
     (written,) = node.args
     size = len(written.args)
     if size > 1 and all(row.kind == "list" and len(row.args) == size for row in written.args):
@@ -255,7 +256,10 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether transposing a call is a useless edit: it changes nothing or only the shape, or equals another."""
+    """Return whether transposing a call is no useful edit.
+
+    It changes nothing or only the shape, or another edit does the same.
+    """
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
@@ -283,7 +287,7 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
 
 
 def bracketed(terms: Sequence[Node]) -> Iterator[Node]:
-    """Yield sums with brackets that may be missing: ``(a - b)*c`` for ``a - b*c``, and ``c*(a - b)`` for ``c*a - b``."""
+    """Yield sums with brackets that may be missing: ``(a - b)*c`` for ``a - b*c``, ``c*(a - b)`` for ``c*a - b``."""
     for first, last in itertools.combinations(range(len(terms)), 2):
         before, after = terms[:first], terms[last + 1 :]
         start, is_negative = (terms[first].args[0], True) if terms[first].kind == "neg" else (terms[first], False)
@@ -322,7 +326,7 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield a product with the root of its numbers, and with the root of its other factors."""
+    """Yield a product with a square root over its numbers, and one with a square root over its other factors."""
     if any(map(matrices, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
@@ -335,13 +339,13 @@ def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a factor is the square of a rational number, or the inverse of one."""
+    """Return whether a factor is a rational number, or the inverse of one, whose square root is rational."""
     value = (node.args[0] if node.kind == "inv" else node).value
     return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
 
 
 def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield a product in which two vectors, or two letters that are easily confused, have changed their places."""
+    """Yield a product in which two vectors, or two easily confused letters, have exchanged places."""
     names = list(dict.fromkeys(part for _, part in walk(node) if part.kind == "name" and part.value != "pi"))
     if len(names) > MOST_NAMES_EXCHANGED or all(part.kind == "name" for part in node.args):
         return
@@ -353,7 +357,7 @@ def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Itera
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
-    """Yield ``b/a`` in place of a quotient ``a/b``."""
+    """Yield a product with ``b/a`` in place of a quotient ``a/b``."""
     for below, divisor in enumerate(factors):
         if divisor.kind != "inv" or divisor.args[0].kind != "name":
             continue
@@ -365,7 +369,7 @@ def _of_quotients(factors: list[Node]) -> Iterator[Change]:
 
 
 def _of_sequence(factors: list[Node]) -> Iterator[Change]:
-    """Yield a product of elementary rotations with the factors in reverse order, and with other axes."""
+    """Yield a product of elementary rotations with its factors in reverse order, and with other axes."""
     yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
@@ -381,7 +385,7 @@ def _of_sequence(factors: list[Node]) -> Iterator[Change]:
 
 
 def _spelled_like(rotation: str) -> tuple[str, ...]:
-    """Return the rotations about the three axes, spelled ``Rx`` or ``R_x`` as one of them is."""
+    """Return the names of the rotations about the three axes, spelled like ``rotation``: ``Rx`` or ``R_x``."""
     return tuple(rotation[:-1] + axis for axis in "xyz")
 
 
@@ -424,7 +428,7 @@ def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Calla
 
 
 def _of_quaternion(node: Node) -> Iterator[Change]:
-    """Yield changed quaternions: the scalar component moved to the other end, and the conjugate."""
+    """Yield a quaternion with its scalar component moved to the other end, and its conjugate."""
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
@@ -436,7 +440,7 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield edits that change all occurrences: of an angle, of a matrix by its name, of all products of inertia."""
+    """Yield edits that change all occurrences of an angle, of a matrix's name, or of the products of inertia."""
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
     arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
@@ -479,7 +483,7 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node with the signs of its factors moved to the front, as the reader of claims builds it."""
+    """Return a node in the form that the reader of claims builds: the signs of factors move to the front."""
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":
@@ -494,7 +498,7 @@ def _swapped_functions(tree: Node, angle: Node) -> Node:
 
 
 def normalise_factors(node: Node) -> Node:
-    """Return a tree without factors 1 and without fractions inside of fractions, which edits of numbers produce."""
+    """Return a tree without factors 1 and without nested fractions, which edits of numbers produce."""
     args = tuple(map(normalise_factors, node.args))
     if node.kind == "power" and args[1] == number(1):
         return args[0]
@@ -517,7 +521,7 @@ def normalise_factors(node: Node) -> Node:
 
 
 def scaled(term: Node, ratio: Fraction) -> Node:
-    """Return a term multiplied by a rational number, in the form in which people write it: ``m*r**2/2``."""
+    """Return a term times a rational number, written as people write it: ``m*r**2/2``."""
     size = abs(ratio)
     above = [] if size.numerator == 1 else [number(size.numerator)]
     below = [] if size.denominator == 1 else [Node("inv", None, (number(size.denominator),))]
@@ -526,7 +530,7 @@ def scaled(term: Node, ratio: Fraction) -> Node:
 
 
 def flattened(node: Node) -> Node:
-    """Return a tree in which sums inside of sums are merged, and products inside of products, without terms 0."""
+    """Return a tree in which nested sums and nested products are merged, and zero terms are left out."""
     args = tuple(map(flattened, node.args))
     if node.kind == "sum":
         return sum_of([term for term in args if term.kind != "number" or term.value], node.span)

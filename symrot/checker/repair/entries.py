@@ -1,4 +1,4 @@
-"""Repairs of a matrix, given by its rows, in which several entries are wrong: one edit for each wrong entry."""
+"""Repairs of a written-out matrix with several wrong entries: one edit for each wrong entry."""
 
 from collections.abc import Callable, Sequence
 from itertools import combinations
@@ -15,7 +15,7 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs of a matrix, given by its rows, in which each wrong entry has its own edit."""
+    """Return the repairs of a written-out matrix in which each wrong entry has its own edit."""
     candidates: list[Candidate] = []
     references = {"right": numeric.left, "left": numeric.right}
     for place in numeric.sides_to_edit:
@@ -77,12 +77,12 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
 
 
 def replacement(made: Node) -> Callable[[Node], Node]:
-    """Return a function that ignores its argument and returns ``made``, as the edit for :func:`replaced`."""
+    """Return a constant function: it returns ``made`` for any node, as the edit that :func:`replaced` applies."""
     return lambda _: made
 
 
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
-    """Return a tree with two edits in different parts; None if one of the parts lies inside the other."""
+    """Return a tree with two edits in different parts; None if one of the parts contains the other."""
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:
         return None
@@ -91,7 +91,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether a path leads to the same part of an edited tree as of the original tree."""
+    """Return whether a path leads to the same part in an edited tree as in the original tree."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

@@ -1,7 +1,7 @@
 """The numeric filter: it evaluates edited claims at two points in double precision, to discard false ones quickly.
 
-Parts that an edit leaves unchanged are evaluated once. The work is bounded by a count of evaluated parts, so that every
-run gives the same repairs.
+Parts that an edit leaves unchanged are evaluated only once. The work is bounded by a count of evaluated parts, so that
+every run gives the same repairs.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,7 @@ SIDES = ("right", "left")
 
 @dataclass(frozen=True)
 class Change:
-    """An edit of one tree of a claim: of a side (``"left"`` or ``"right"``), or of a definition, given by its name."""
+    """An edit of one tree of a claim; ``place`` is ``"left"``, ``"right"`` or the name of the edited definition."""
 
     place: str
     edit: Edit
@@ -36,7 +36,7 @@ class Change:
 
 
 class Candidate(NamedTuple):
-    """A possible repair: its cost, its code, and its changes."""
+    """A possible repair of a claim: its cost, the code of the fault that it corrects, and its changes."""
 
     cost: float
     code: str
@@ -73,17 +73,17 @@ class NumericFilter:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The places that the claim allows to edit: ``"left"``, ``"right"`` and the names of used definitions."""
+        """The parts of the claim that repairs may edit: ``"left"``, ``"right"`` and the names of used definitions."""
         return tuple(place for place in (*SIDES, *self.used) if place in self.claim.editable)
 
     @property
     def sides_to_edit(self) -> tuple[str, ...]:
-        """The sides that may be edited."""
+        """The sides that repairs may edit."""
         return tuple(place for place in SIDES if place in self.claim.editable)
 
     @property
     def names(self) -> list[str]:
-        """The names that occur in the claim: symbols and definitions."""
+        """The names in the claim: symbols and definitions."""
         return [name for name in (*self.symbols, *self.definitions) if name != "t"]
 
     def tree_at(self, place: str) -> Node:
@@ -111,7 +111,7 @@ class NumericFilter:
     def sensible(self, place: str, tree: Node) -> bool:
         """Return whether an edited tree makes sense in its place.
 
-        A side must be more than a number, and a definition must not use its own name.
+        A side must be more than a number, and a definition must use neither its own name nor a later one.
         """
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
@@ -120,7 +120,7 @@ class NumericFilter:
         return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
-        """Return the claim with the changes made to its trees."""
+        """Return the claim with changed trees."""
         return self.claim.with_parts({change.place: change.edit.tree for change in changes})
 
     def text(self, changes: Sequence[Change]) -> str:
@@ -135,7 +135,7 @@ class NumericFilter:
     # -- wrong entries ----------------------------------------------------------------------------------------------
 
     def _wrong_entries(self) -> set[int]:
-        """Return the numbers of the entries in which the sides differ, counted row by row."""
+        """Return the numbers of the matrix entries in which the sides differ, counted row by row."""
         wrong: set[int] = set()
         for point in self.points:
             try:
@@ -146,9 +146,9 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a test of paths: whether a single edit may change the part at a path.
+        """Return a function that tells, for each path, whether a single edit may change the part there.
 
-        In a matrix that is given by its rows, an edit may change an entry only if no other entry is wrong.
+        In a written-out matrix, an edit may change an entry only if no other entry is wrong.
         """
         cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
@@ -171,7 +171,10 @@ class NumericFilter:
         return point.value(left), point.value(right)
 
     def redefined(self, point: Point, name: str, tree: Node) -> Point:
-        """Return a point with one definition replaced; parts that do not depend on it keep their stored values."""
+        """Return a point with one definition replaced.
+
+        Stored values that do not depend on the definition are reused.
+        """
         if name not in self.dependent:
             self.dependent[name] = self._dependent_on(name)
         stale = self.dependent[name]
@@ -179,7 +182,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return the names of the definitions, and the ids of the parts, whose values depend on a definition."""
+        """Return the names of the definitions, and the ids of the trees, whose values depend on a definition."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):
@@ -198,7 +201,7 @@ class NumericFilter:
         return dependents
 
     def holds(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edited claim is true at the points, without both sides having become zero."""
+        """Return whether an edited claim is true at the test points, and its sides have not both become zero."""
         if not self.affordable():
             return False
         for point in self.points:
@@ -212,7 +215,7 @@ class NumericFilter:
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
-        """Return left minus right for each entry of an edited claim.
+        """Return left minus right of an edited claim at a point, for each entry.
 
         Raises
         ------
@@ -223,30 +226,30 @@ class NumericFilter:
         size = max(len(left), len(right))
         left, right = (side * size if side == [0.0] else side for side in (left, right))
         if len(left) != len(right):
-            raise UndefinedValue("expected sides of the same shape, got sides of different shapes")
+            raise UndefinedValue("expected two sides of the same shape, got different shapes")
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return the rounded values of both sides at a point, which are equal for one repair written in two ways."""
+        """Return rounded values of both sides at a point; they are equal for a repair that is written in two ways."""
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))
 
 
 @dataclass(frozen=True)
 class OpenEntries:
-    """The entries of a matrix that is given by its rows, and which of them a single edit may change."""
+    """The entries of a written-out matrix (``cells``), and those that a single edit may change (``alone``)."""
 
     cells: tuple[Path, ...]
     alone: tuple[Path, ...]
 
     def __call__(self, path: Path) -> bool:
-        """Return whether the part at a path is outside of all entries, or inside of the only wrong entry."""
+        """Return whether the part at a path may be changed: it is in no matrix entry, or in the only wrong one."""
         inside = next((cell for cell in self.cells if path[: len(cell)] == cell), None)
         return inside is None or inside in self.alone
 
 
 def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
-    """Return (name, whether it is written with ``(t)``) for every name in the trees that is not built in."""
+    """Return the names in the trees that are not built in, as pairs (name, whether it is written with ``(t)``)."""
     names = set()
     for tree in trees:
         for _, node in walk(tree):
@@ -258,7 +261,7 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
 
 
 def is_nontrivial(tree: Node) -> bool:
-    """Return whether a tree contains a symbol or a matrix, so that it is more than a number."""
+    """Return whether a tree is more than a number: whether it contains a symbol or a matrix."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
 
 
@@ -272,7 +275,7 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
 
 
 def matrix_entries(tree: Node) -> dict[int, Path]:
-    """Return the paths of the entries of a matrix that is given by its rows, by number, counted row by row."""
+    """Return the path to each entry of a written-out matrix, by the entry's number, counted row by row."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":
@@ -284,7 +287,10 @@ def matrix_entries(tree: Node) -> dict[int, Path]:
 
 
 def pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the parts that an edit may extend: all but exponents, and the variables of derivatives and integrals."""
+    """Yield (path, node) for the parts of a tree that an edit may multiply or add to.
+
+    Exponents, and the variables of derivatives and integrals, are left out.
+    """
     if tree.kind not in ("list", "inv"):
         yield path, tree
     for place, child in enumerate(tree.args):

@@ -1,6 +1,6 @@
-"""Repairs that insert something: a missing term, a missing factor that is a matrix, another definition.
+"""Repairs that insert or exchange a part: a missing term, a missing matrix factor, another definition.
 
-The missing term is the exact difference of the sides.
+A missing term is the exact difference of the sides.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -46,7 +46,7 @@ MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one term to each wrong entry: the exact difference of the two sides there."""
+    """Yield repairs that add one term to each wrong entry; the term is the exact difference of the two sides there."""
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
     if shape != other:
@@ -81,7 +81,7 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield the repair of a side that adds the missing term to each wrong entry, if each entry lacks a single term."""
+    """Yield the repair of a side that adds its missing term to each wrong entry, if each entry lacks only one term."""
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
         piece = at(made, path)
@@ -97,7 +97,7 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
 def _inside(
     numeric: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]
 ) -> Iterator[Candidate]:
-    """Yield repairs of an entry that add one term inside of a bracket: ``a (b + m)`` in place of ``a b``."""
+    """Yield repairs that add one term inside a bracket of an entry: ``a (b + m)`` in place of ``a b``."""
     interpreter = numeric.claim.interpreter()
     tree = numeric.tree_at(place)
     whole = at(tree, cell)
@@ -117,7 +117,7 @@ def _inside(
 
 
 def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that multiply a matrix by another matrix of the claim, from the left or the right."""
+    """Yield repairs that multiply a matrix by another matrix of the claim, on the left or right."""
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in numeric.sides_to_edit:
@@ -135,7 +135,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that replace the name of one definition by the name of another."""
+    """Yield repairs that use the name of another definition of the claim."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
@@ -148,9 +148,10 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return a difference as the term that a part of a formula lacks: one short product without a divisor; else None.
+    """Return a difference of two sides as one missing term: a short product without a divisor; None for any other.
 
-    A term with brackets must be much shorter than the part, since adding the difference of the sides repairs anything.
+    A term with brackets must be much shorter than ``piece``, to which it is added, since adding the whole
+    difference of the sides would repair anything.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
@@ -166,7 +167,7 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the parts, with their paths, to which a term may be added.
+    """Yield (path, node) for the parts to which a term may be added.
 
     The value of the tree depends linearly on each of them.
     """

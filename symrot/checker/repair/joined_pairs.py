@@ -1,4 +1,4 @@
-"""Pairs of edits that make a claim true together: a join of their effects instead of a trial of all pairs.
+"""Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
 
 At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
 So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
@@ -41,7 +41,7 @@ def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[
 
 
 def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
-    """Return two edits as changes of a claim; None if they change the same part."""
+    """Return two edits of a claim as changes to apply together; None if they change the same part."""
     if first.place != second.place:
         return first, second
     tree = merged(numeric.tree_at(first.place), first.edit, second.edit)
@@ -55,7 +55,7 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return the differences of the sides at a point, and by how much each single edit reduces them."""
+    """Return left minus right at a point, and the amount by which each single edit reduces it."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -72,7 +72,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return the quotient of two scalar sides at a point, and the factor by which each edit of a side reduces it."""
+    """Return left divided by right at a point, for scalar sides, and the factor by which each edit reduces it."""
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
@@ -92,7 +92,10 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of edits that together have the whole effect; ``rest`` returns what one edit leaves to the other."""
+    """Yield the numbers of two edits that together have the whole effect.
+
+    ``rest`` returns the effect that remains for the second edit: the difference or the quotient.
+    """
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)
     if not scale:

@@ -1,7 +1,7 @@
-"""Values of trees at points in double precision, which take milliseconds and rule out most wrong repairs.
+"""Values of trees at test points in double precision, which take milliseconds and rule out most wrong repairs.
 
 Derivatives are computed with dual numbers. A function of time is represented by its value and its first derivatives,
-all independent.
+which are independent numbers.
 """
 
 import math
@@ -67,7 +67,7 @@ GAUSS = {1: 20, 2: 18, 3: 16}
 
 @dataclass
 class Point:
-    """A point at which trees are evaluated.
+    """A test point at which trees are evaluated.
 
     Attributes
     ----------
@@ -78,13 +78,13 @@ class Point:
     definitions : mapping
         Trees of definitions.
     remembered : frozenset of int
-        Identities of the trees whose values are stored; these trees must live as long as the point.
+        Identities (``id``) of the trees whose values are stored; these trees must live as long as the point.
     spent : list of int
-        The number of products of numbers so far, shared by all points made from this one.
+        A count of multiplications, for a budget; it is shared by all points made from this one.
     weight : int
-        The number of products of numbers in one product of values: times three for each lift to dual numbers.
+        The cost of multiplying two values, in float multiplications; each lift to dual numbers triples it.
     known : dict
-        Stored values.
+        Stored values of trees.
     lifted : dict
         Points lifted to dual numbers, by variable.
     """
@@ -104,7 +104,7 @@ class Point:
         Raises
         ------
         UndefinedValue
-            If there is none.
+            If the tree has no value at the point.
         """
         try:
             return self._value(node)
@@ -122,11 +122,11 @@ class Point:
         return value
 
     def redefined(self, name: str, node: Node) -> "Point":
-        """Return a copy of the point with one definition replaced."""
+        """Return a copy of the point in which one definition is replaced."""
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return the point with a dual number as the value of a variable, to differentiate by this variable.
+        """Return the point with dual numbers as values, to differentiate by a variable.
 
         The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
         """
@@ -142,7 +142,7 @@ class Point:
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise UndefinedValue("expected a variable to differentiate by that has a value, got another one")
+                raise UndefinedValue("expected to differentiate by a name that has a value, got another one")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -217,7 +217,7 @@ def _list(point: Point, node: Node) -> Any:
 
 
 def _stacked(parts: Sequence[Any]) -> Rows:
-    """Return a column of numbers and of the entries of columns: (scalar, vector) is a quaternion."""
+    """Return one column from numbers and columns: a quaternion from a scalar and a vector."""
     entries: list[Any] = []
     for part in parts:
         entries += [entry for (entry,) in needed(part, (None, 1))] if is_matrix(part) else [part]
@@ -253,7 +253,7 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return an integral over a box by Gauss-Legendre quadrature, at all nodes together; outer variables come first."""
+    """Return an integral over a box by Gauss-Legendre quadrature; the ranges of the outer variables come first."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -293,7 +293,7 @@ def _product_of_quaternions(*factors: Any) -> Rows:
 
 
 def _components(quaternion: Any) -> list[Any]:
-    """Return the four components of a quaternion; the scalar component of a vector is zero."""
+    """Return the four components of a quaternion; a vector gets the scalar component zero."""
     entries = [entry for (entry,) in needed(quaternion, (None, 1))]
     return [0.0, *entries] if len(entries) == 3 else [entry for (entry,) in needed(quaternion, (4, 1))]
 
@@ -357,10 +357,11 @@ def points(
     symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
     hypotheses: Sequence[tuple[Node, Node]], remembered: frozenset[int], count: int = 2, most: float = 1.7,
 ) -> list[Point]:  # fmt: skip
-    """Return random points, the same in every run, that obey the hypotheses to double precision.
+    """Return random test points, the same in every run, that obey the hypotheses to double precision.
 
     Symbols lie between 0.3 and ``most`` before Newton's method moves them until the hypotheses hold; if that fails,
-    there are fewer than ``count`` points. Each point also stores the values of the trees whose ids are ``remembered``.
+    there are fewer than ``count`` points. Each point also stores the values of the trees whose ids are
+    ``remembered``.
     """
     accepted = []
     for seed in range(3 * count):
@@ -380,7 +381,7 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Return a point moved by Newton's method (least-squares steps) until the hypotheses hold; None if that fails."""
+    """Move a point until the hypotheses hold, by Newton's method (least-squares steps); return None if that fails."""
     variables = [Node("name", name) for name in point.symbols]
     variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
     for _ in range(30 if hypotheses else 0):

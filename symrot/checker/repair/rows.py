@@ -1,4 +1,4 @@
-"""Small matrices as tuples of rows, for entries of any kind of number: sums, products, rotations, quaternions."""
+"""Small matrices as tuples of rows, whose entries are any kind of number: sums, products, rotations, quaternions."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -48,7 +48,7 @@ def shape_of(value: Any) -> tuple[int, int] | None:
 
 
 def mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """Return a scalar or matrix with a function applied to every entry."""
+    """Return a scalar or matrix after applying a function to every entry."""
     return tuple(tuple(function(entry) for entry in row) for row in value) if is_matrix(value) else function(value)
 
 
@@ -68,13 +68,13 @@ def times(left: Any, right: Any) -> Any:
     if not is_matrix(right):
         return mapped(lambda entry: entry * right, left)
     if len(left[0]) != len(right):
-        raise UndefinedValue("expected factors with fitting shapes in a product, got others")
+        raise UndefinedValue("expected as many columns in the left factor as rows in the right one")
     columns = tuple(zip(*right, strict=True))
     return tuple(tuple(dot(row, column) for column in columns) for row in left)
 
 
 def dot(left: Sequence[Any], right: Sequence[Any]) -> Any:
-    """Return the sum of products of two sequences."""
+    """Return the dot product of two sequences."""
     total: Any = 0.0
     for a, b in zip(left, right, strict=True):
         total = total + a * b
@@ -87,16 +87,16 @@ def transposed(value: Any) -> Rows:
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix unchanged; raise UndefinedValue for a scalar, and for a matrix of another shape."""
+    """Return a matrix unchanged; raise UndefinedValue for a scalar, or for a matrix of another shape than ``shape``."""
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
-        raise UndefinedValue("expected a matrix of the shape needed here, got another value")
+        raise UndefinedValue("expected a matrix of the shape that the function needs, got another value")
     rows: Rows = value
     return rows
 
 
 def determinant(rows: Rows) -> Any:
-    """Return the determinant of a matrix of at most 6 rows, by minors."""
+    """Return the determinant of a matrix of at most 6 rows, by expansion into minors."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
         raise UndefinedValue("expected a square matrix of at most 6 rows in a determinant, got another one")
     if len(rows) == 1:
@@ -109,7 +109,7 @@ def determinant(rows: Rows) -> Any:
 
 
 def inverted(rows: Rows) -> Rows:
-    """Return the inverse of a matrix, computed from the determinants of its submatrices."""
+    """Return the inverse of a matrix, from the determinants of its submatrices."""
     below = inverse(determinant(rows))
     size = range(len(rows))
     if len(rows) == 1:
@@ -134,7 +134,7 @@ def skew(a: Any, b: Any, c: Any) -> Rows:
 
 
 def rotation(axis: int) -> Callable[[Any], Rows]:
-    """Return the active rotation about axis 0, 1 or 2, as a function of the angle, rad."""
+    """Return the rotation matrix about axis 0, 1 or 2 (it rotates vectors), as a function of the angle in rad."""
 
     def matrix(angle: Any) -> Rows:
         c, s = cosine(angle), sine(angle)
@@ -147,7 +147,7 @@ def rotation(axis: int) -> Callable[[Any], Rows]:
 
 
 def rotation_of_quaternion(*q: Any) -> Rows:
-    """Return the matrix that rotates a vector v into q v q*: a rotation matrix times the squared length of q."""
+    """Return the matrix that maps a vector v to q v q*: a rotation matrix times the squared length of q."""
     a, b, c, d = q
     conjugate = [a, -b, -c, -d]
     columns = [hamilton(hamilton(q, [0.0, *(float(i == j) for j in range(3))]), conjugate)[1:] for i in range(3)]
@@ -155,7 +155,7 @@ def rotation_of_quaternion(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return for each entry whether two values agree to double precision; None if their shapes differ."""
+    """Return whether two values agree to double precision, for each entry; None if their shapes differ."""
     lefts, rights = entries_of(left), entries_of(right)
     if shape_of(left) != shape_of(right):
         if not is_matrix(left) and lefts == [0.0]:

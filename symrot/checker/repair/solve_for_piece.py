@@ -1,4 +1,4 @@
-"""Repairs that replace one part of a formula by the value that makes the claim true, recognised as a short formula.
+"""Repairs that replace one part of a formula by the value that makes the claim true, written as a short formula.
 
 The claim is solved numerically for one part at a time (a term, a factor or a symbol), at two points. The values that
 the part must have are compared with all short products of symbols and functions of the claim. So a lost term, a lost
@@ -46,7 +46,7 @@ Values = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Entry:
-    """A product of symbols and functions of the claim, with its values at the points."""
+    """A product of symbols and functions of the claim, with its values at the test points."""
 
     factors: tuple[Node, ...]
     values: Values
@@ -57,7 +57,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short products of the symbols, functions, sines and cosines of a claim, and its terms, sorted by value."""
+    """Short products of a claim's symbols, functions, sines, cosines and brackets, and its terms, sorted by value."""
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric
@@ -132,7 +132,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield pairs (short product, rational factor) that together have these values, the shortest products first."""
+        """Yield the products that have these values up to a rational factor, with that factor, the shortest first."""
         if not all(values):
             return
         key = self._key(values)
@@ -154,7 +154,7 @@ def _times(left: Values, right: Values) -> Values:
 
 
 def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction | None:
-    """Return the simple rational number to which all values are equal, or None if there is none."""
+    """Return the simple rational number that all values are equal to, or None."""
     near = Fraction(values[0]).limit_denominator(largest)
     fits = all(abs(value - near) <= 1e-3 * CLOSE * abs(near) for value in values)
     return near if fits and near and abs(near.numerator) <= LARGEST_RATIO * largest else None
@@ -191,7 +191,7 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
-    """Return whether a change makes the claim true without making a side or a definition zero."""
+    """Return whether a change makes the claim true, and makes neither a side nor a definition zero."""
     if not numeric.sensible(change.place, change.edit.tree):
         return False
     if change.place not in SIDES:
@@ -208,9 +208,9 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
-    """Yield (path, part, whether it is a term of a sum) for each part that may be replaced.
+    """Yield (path, node, whether it is a term of a sum) for each part that may be replaced.
 
-    The arguments of most functions are left out.
+    Arguments of sines, rotations and similar functions are left out.
     """
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
@@ -230,7 +230,7 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that a part must have at the test points for the claim to hold; None if none are found."""
+    """Return the values that a part must have at the test points for the claim to hold; None if the search fails."""
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -245,7 +245,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown that makes both sides equal, by the secant method; None if that fails."""
+    """Solve for the unknown that makes both sides equal, by the secant method; return its value, None if that fails."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value
@@ -284,7 +284,10 @@ Reading = tuple[Node, tuple[str, float]]
 def _readings(
     numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace a part, from the values that it has and the values that it should have."""
+    """Yield the formulas that may replace a part, from its values and the values that it should have.
+
+    ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or directly below it in the tree.
+    """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
@@ -323,7 +326,7 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the missing value is a multiple of a term of the part; then the term is wrong, not lost."""
+    """Return whether the missing value is a multiple of a term in the part: this term is wrong, and none is missing."""
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -339,7 +342,7 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
 
 
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return a cost that grows with the length of the inserted product, and with the rational number in front of it."""
+    """Return the cost of inserting a product; it grows with the length of the product and a number in front of it."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
     return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
@@ -381,7 +384,7 @@ def _of_matrix(
 
 
 def _matrices(numeric: NumericFilter, piece: Node) -> list[Node]:
-    """Return the matrices of the claim that have the shape of a part, their transposes, and products of two of them."""
+    """Return matrices of the shape of a part: those of the claim, their transposes, and products of two of them."""
     shape = _shape(numeric, piece)
     written = [node for place in numeric.places for _, node in walk(numeric.tree_at(place)) if numeric.is_matrix(node)]
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]

@@ -1,4 +1,4 @@
-"""Text around a formula that is copied from a page: the number of the equation, ``where`` clauses and ``and``."""
+"""Removing the text around a formula that was copied from a page: its equation number, ``where`` clauses, ``and``."""
 
 import re
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _AND = re.compile(r"(?<=\s)and(?=\s)")
 
 @dataclass(frozen=True)
 class Copied:
-    """A text with blanks in place of what surrounds its formulas, so that positions stay the same.
+    """A text in which blanks replace everything around its formulas; so the formulas keep their positions.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Copied:
     numbers : tuple of str
         The numbers of equations.
     notes : tuple of str
-        Sentences about what is left out.
+        Sentences that say which words are left out.
     """
 
     text: str
@@ -42,7 +42,7 @@ class Copied:
 
 
 def without_surroundings(source: str, numbers: bool = True) -> Copied:
-    """Return a text without the numbers of its equations (if ``numbers``) and without clauses that hold no equation.
+    """Return a text without clauses that hold no equation and, if ``numbers``, without the numbers of its equations.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return clauses after ``where``, with blanks in place of clauses without an equation, and a list of those."""
+    """Return the clauses after ``where`` with blanks in place of those without an equation, and a list of these."""
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""The cursor of the reader of claims: the place in the tokens of a formula, its names, and its ambiguous places."""
+"""The cursor of the claim reader: a position in the tokens of a formula, its names, and its ambiguous places."""
 
 import re
 from abc import ABC, abstractmethod
@@ -13,13 +13,18 @@ from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
-__all__ = ["ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
-           "is_usual_vector"]  # fmt: skip
+__all__ = [
+    "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
+    "is_mass_before_vector", "is_usual_vector",
+]  # fmt: skip
 
 DEEPEST_NESTING = 60
 LONGEST_NUMBER = 200
 TIME = Node("name", "t")
 ADDING = ("+", "-")
+MASS = "dm"
+"""The element of mass of a body."""
+
 FACTOR_MARKS = ("(", "[", "√")
 """Marks with which a factor without a sign before it may start."""
 
@@ -30,12 +35,12 @@ USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "
 
 @dataclass(frozen=True)
 class Doubt:
-    """A place of a text that can be read in two ways.
+    """An ambiguous place of a text: it can be read in two ways.
 
     Attributes
     ----------
     key : (str, int)
-        The kind of the place, and its position.
+        The kind of ambiguity, and its position.
     excerpt : str
         The text of the place.
     """
@@ -46,9 +51,9 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names with a meaning: declared symbols, functions of time and matrices, and names that occur by themselves.
+    """The names that have a meaning in a text: declared symbols and functions, and names that occur without a bracket.
 
-    ``vectors`` are the names on either side of a cross product, which are vectors.
+    ``vectors`` are the names that cross products and hats, for example, show to be vectors.
     """
 
     symbols: frozenset[str] = frozenset()
@@ -57,7 +62,7 @@ class Vocabulary:
     vectors: frozenset[str] = frozenset()
 
     def function(self, name: str) -> str | None:
-        """Return the name if it is a built-in or declared function; None for any other name."""
+        """Return the name of the built-in or declared function that a name means; None if it means no function."""
         if name in self.symbols or (name in ROTATIONS and name in self.alone):
             return None
         if name in BUILT_IN or name in self.functions or name in DEFINED:
@@ -66,15 +71,15 @@ class Vocabulary:
 
 
 class Cursor(ABC):
-    """A place in the tokens of a formula, with the methods that read a tree starting at that place.
+    """A position in the tokens of a formula, with the methods that parse what follows it.
 
     Attributes
     ----------
     plain : bool
-        Whether the formula uses anything that SymPy's text does not have.
+        Whether the formula uses notation that is not SymPy syntax.
     doubts : list of Doubt
     notes : list of str
-        Sentences about readings that a reader should know.
+        Sentences about the way in which the formula is read.
     timed : set of str
         Names with a prime or a dot, which are functions of time.
     differentiated : set of str
@@ -89,6 +94,7 @@ class Cursor(ABC):
         self.vocabulary, self.flips, self.as_sympy = vocabulary or Vocabulary(), flips, as_sympy
         self.depth = self.index = self.bars = 0
         self.plain = self.in_integral = False
+        self.element = MASS
         self.doubts: list[Doubt] = []
         self.notes: list[str] = []
         self.timed: set[str] = set()
@@ -111,7 +117,7 @@ class Cursor(ABC):
         return token
 
     def take(self, mark: str) -> bool:
-        """Step over an operator or bracket if it is the next token, and return whether it was."""
+        """Skip an operator or bracket if it is the next token, and return whether it was."""
         is_next = self.peek() == mark
         self.index += is_next
         return is_next
@@ -132,7 +138,7 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record a place that can be read in two ways; return whether it is to be read in the less usual way."""
+        """Record an ambiguous place of the text; return whether this reading gives it its less usual meaning."""
         self.plain = True
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
@@ -145,15 +151,15 @@ class Cursor(ABC):
 
     @abstractmethod
     def expression(self) -> Node:
-        """Read a sum and return its tree."""
+        """Parse a sum and return its tree."""
 
     @abstractmethod
     def factor(self) -> Node:
-        """Read a power, with the signs before it, and return its tree."""
+        """Parse a power, with the signs before it, and return its tree."""
 
     @abstractmethod
     def power(self) -> Node:
-        """Read a number, name, call or bracket, with its exponents, and return its tree."""
+        """Parse a number, name, call or bracket, with its exponents, and return its tree."""
 
     def row(self) -> list[Node]:
         entries = [self.expression()]
@@ -169,7 +175,7 @@ class Cursor(ABC):
         return members
 
     def called(self, function: str, token: Token) -> Node:
-        """Read the arguments, in brackets, of a function and return the tree of the call."""
+        """Parse the arguments of a function, in brackets, and return the tree of the call."""
         self.expect("(")
         arguments = self.members(")")
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
@@ -184,7 +190,7 @@ class Cursor(ABC):
         if len(token.text) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", token.start)
         if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
-            raise self.fail(f"a power of ten within {LONGEST_NUMBER}", token.start)
+            raise self.fail(f"a power of ten with an exponent up to {LONGEST_NUMBER}", token.start)
         if exponent and self.token().kind == "name" and self.token().tight:
             raise self.fail(f"a product sign after the number {token.text}")
         return Node("number", Fraction(token.text), (), self.span(token.start))
@@ -201,11 +207,11 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
 
     def is_element(self) -> bool:
-        """Return whether the element of mass dm is at the cursor."""
-        return self.token().text == "dm"
+        """Return whether the element of the integral, such as dm or dx, is at the cursor."""
+        return self.token().text == self.element
 
     def end_of_run(self) -> int:
-        """Return the position in the text at which the factor at the cursor ends."""
+        """Return the position in the text where the factor at the cursor ends."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
@@ -222,22 +228,28 @@ class Cursor(ABC):
         return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
 
     def is_cross_letter(self) -> bool:
-        """Return whether a letter x is the sign of a cross product: it has blanks and names of vectors around it."""
+        """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
+        after = self.token(2) if is_mass_before_vector(after, self.token(2)) else after
         if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
 
 
 def is_usual_vector(name: str) -> bool:
-    """Return whether a name usually is that of a vector."""
+    """Return whether books usually give a name, such as r or v, to a vector."""
     return re.split("[_0-9]", name)[0] in USUAL_VECTORS
 
 
+def is_mass_before_vector(token: Token, after: Token) -> bool:
+    """Return whether a token is the mass m in ``r x m v``."""
+    return token.text in ("m", "M") and after.kind == "name" and is_usual_vector(after.text)
+
+
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
-    """Return whether a letter x may be the sign of a cross product, judged by the tokens before and after it."""
+    """Return whether a letter x may be a cross product sign, judged by the tokens before and after it."""
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

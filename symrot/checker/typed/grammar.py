@@ -1,6 +1,6 @@
-"""The grammar of claims: from tokens to trees by precedence, with tables for operators, functions and methods.
+"""The grammar of claims: a parser by precedence, with tables for operators, functions and methods.
 
-SymPy's text has one meaning. A formula as people type it has products without a sign (``2x``, ``m g l``), functions
+SymPy syntax has one meaning. A formula as people type it has products without a sign (``2x``, ``m g l``), functions
 without brackets (``sin 2x``), powers (``x^2``, ``x²``), primes and dots. It may be ambiguous: the parser then chooses
 the usual meaning and records the place as a :class:`Doubt`. If the place is among ``flips``, it chooses the other
 meaning.
@@ -24,17 +24,17 @@ BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n 
 
 
 def _is_matrix_name(node: Node) -> bool:
-    """Return whether a factor is a name in a capital letter, which may be a matrix."""
+    """Return whether a factor is a name that starts with a capital letter, which may be a matrix."""
     return node.kind == "name" and str(node.value)[0].isupper()
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index at which the left side of a cross product starts: at R in ``R a``, else at the last factor."""
+    """Return the index at which the left side of a cross product starts: the R of ``R a × b``, else the last factor."""
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
 class Parser(PiecesPart):
-    """The complete parser of claims, from chains of equals signs down to powers."""
+    """The complete parser of claims, for everything from chains of equals signs down to powers."""
 
     def whole(self) -> Node:
         node = self.expression()
@@ -43,7 +43,7 @@ class Parser(PiecesPart):
         return node
 
     def relation(self) -> tuple[list[str], list[Node]]:
-        """Read the sides of an equation, or of a chain ``a = b = c``; return the signs between them, and the sides."""
+        """Parse an equation, or a chain ``a = b = c``; return the relation signs and the sides."""
         if self.token().text == "Eq" and self.token(1).text == "(":
             self.index += 2
             sides = self.members(")")
@@ -66,9 +66,9 @@ class Parser(PiecesPart):
         return signs, sides
 
     def head(self) -> Node | None:
-        """Read a head, such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if the text has no head.
+        """Parse a left side such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if there is none.
 
-        The arguments of a head occur in the formula after it, or this formula is a matrix.
+        It is one if the right side contains the arguments, or is a matrix.
         """
         name, texts = self.token(), [token.text for token in self.tokens]
         end = texts.index(")") if ")" in texts else 0
@@ -127,10 +127,10 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Read and return the formula after a slash: without brackets, one factor or the whole product that follows.
+        """Parse the divisor after a slash: without brackets, it is one factor or the whole product that follows.
 
-        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
-        the product.
+        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks,
+        divide by the product.
         """
         first = self.token()
         below = [self.factor()]
@@ -160,7 +160,7 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Read ``×`` and the factor after it, and put their product into ``factors``; for vectors, a cross product."""
+        """Parse ``×`` and the factor after it; put a cross product or, for scalars, the factor into ``factors``."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
@@ -179,7 +179,7 @@ class Parser(PiecesPart):
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Read a dot after a vector and the factor behind it; put their scalar product into ``factors``."""
+        """Parse a dot after a vector and the factor after it; put their scalar product into ``factors``."""
         self.plain = True
         self.next()
         right = self.factor()
@@ -189,7 +189,7 @@ class Parser(PiecesPart):
             factors.append(right)
 
     def is_spaced_dot(self) -> bool:
-        """Return whether a full stop with blanks around it is the sign of a scalar product: ``a . b``."""
+        """Return whether a full stop with blanks around it is the sign of a scalar product, as in ``a . b``."""
         return self.peek() == "." and self.token().spaced and self.token(1).spaced
 
     def power(self) -> Node:
@@ -224,7 +224,7 @@ class Parser(PiecesPart):
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:
-        """Read the exponent after ``^`` and return the power of ``base``, or its transpose (T) or conjugate (*)."""
+        """Parse the exponent after ``^``; return a power of ``base``, its transpose (T) or its conjugate (``*``)."""
         if self.peek() == "*":
             self.next()
             return Node("call", CONJUGATE, (base,), self.span(start))

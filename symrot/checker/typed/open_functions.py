@@ -1,10 +1,10 @@
-"""Functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``."""
+"""Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``."""
 
 import re
 
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
-from symrot.checker.typed.defined_functions import DEFINED
+from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import SINGLE_ARGUMENT
 
@@ -12,14 +12,17 @@ __all__ = ["OpenFunctionsPart"]
 
 
 class OpenFunctionsPart(Cursor):
-    """The part of the parser that reads functions without brackets, and derivatives written as quotients."""
+    """The part of the parser for functions without brackets, and for derivatives written as quotients."""
 
     def applied(self, function: str, token: Token) -> Node:
-        """Read what follows the name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or its power."""
+        """Parse what follows a function's name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or power."""
         exponent = self.function_exponent(token)
-        inverse = exponent == number(-1) and function in ("sin", "cos", "tan")
+        inverse = exponent == number(-1)
+        if inverse and function in DISPUTED:
+            raise self.fail(instead(function), token.start)
+        inverse = inverse and function in INVERSES
         if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
-            function, exponent = f"a{function}", None
+            function, exponent = INVERSES[function], None
         if self.peek() == "(":
             call = self.called(function, token)
         else:
@@ -29,7 +32,7 @@ class OpenFunctionsPart(Cursor):
         return Node("power", None, (call, exponent), self.span(token.start))
 
     def function_exponent(self, token: Token) -> Node | None:
-        """Read and return the exponent between a function and its argument, such as 2 in ``sin^2 x``, or None."""
+        """Parse the exponent between a function and its argument, 2 in ``sin^2 x``; return None if there is none."""
         if self.token().kind == "power":
             raised = self.next()
             self.plain = True
@@ -51,7 +54,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Read an argument without brackets; return the call, and an exponent of the whole call or None."""
+        """Parse an argument without brackets; return the call, and the exponent of the whole call or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -83,9 +86,9 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the exponent at the end of an argument if it applies to the function: ``sin x^2`` read as (sin x)^2.
+        """Return the exponent at the end of an argument if it belongs to the call: if ``sin x^2`` is read as (sin x)^2.
 
-        Usually an exponent there belongs to the argument: sin(x^2).
+        Usually such an exponent belongs to the argument: sin(x^2). Then return None.
         """
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
@@ -96,7 +99,7 @@ class OpenFunctionsPart(Cursor):
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the next factor belongs to the argument of a function without brackets: x in ``sin 2 x``."""
+        """Return whether the next factor belongs to an argument without brackets, as x in ``sin 2 x`` does."""
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -116,7 +119,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether a slash after a function without brackets divides the argument: ``sin x/2`` as sin(x/2)."""
+        """Return whether a slash after a function's argument divides the argument: whether ``sin x/2`` is sin(x/2)."""
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False
@@ -130,7 +133,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Read the formula after a root sign √, which has no bar to show its end; return the square root."""
+        """Parse the formula after a root sign √, which has no bar to show its end; return the square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -150,7 +153,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
-        """Read ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)`` and return the derivative; otherwise None."""
+        """Parse and return ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)``; return None for any other text."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
         if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
@@ -166,7 +169,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
+        """Return whether an exponent follows the token at the distance ``ahead`` from the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -181,7 +184,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
 
     def derivative_by(self, token: Token) -> Node | None:
-        """Read ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` and return the derivative by x; None for any other text."""
+        """Parse ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` and return the derivative by x; None for any other text."""
         if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
             return None
         if token.text == "d" and self.peek() == "(" and (end := self.end_of_bracket()) is not None:
@@ -191,6 +194,9 @@ class OpenFunctionsPart(Cursor):
         if not name and self.token(place).text != "/":
             name, place = self.tight_name(place)
         slash, (variable, place) = self.token(place).text, self.differential(place + 1)
+        mark = self.token(place)
+        order_of_rate = int(mark.text) if mark.kind == "dots" else len(mark.text) if mark.kind == "prime" else 0
+        place += bool(order_of_rate)  # ∂T/∂θ'
         below, place = self.order_at(place)
         if slash != "/" or not variable or variable == "t" or order != below or name == variable:
             return None
@@ -199,7 +205,11 @@ class OpenFunctionsPart(Cursor):
             return None
         self.plain = True
         self.index += place
-        variables = [Node("name", variable)] * order
+        by = Node("name", variable)
+        if order_of_rate:
+            self.timed.add(variable)
+            by = Node("call", "diff", (Node("call", variable, (TIME,)), *[TIME] * order_of_rate))
+        variables = [by] * order
         if name:
             return Node("call", "diff", (Node("name", name), *variables), self.span(token.start))
         self.deeper()
@@ -210,7 +220,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
-        """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it; None otherwise."""
+        """Return the number of tokens in the bracket at the cursor if ``/dx`` follows the bracket; None otherwise."""
         depth, place = 0, 0
         while self.token(place).kind != "end":
             depth += (self.token(place).text == "(") - (self.token(place).text == ")")
@@ -220,7 +230,7 @@ class OpenFunctionsPart(Cursor):
         return None
 
     def derivative_of_bracket(self, token: Token, end: int) -> Node:
-        """Read ``(x^2)/dx`` after a d and return the derivative; the bracket at the cursor has ``end`` tokens."""
+        """Parse ``(x^2)/dx`` after a d and return the derivative; the bracket at the cursor has ``end`` tokens."""
         variable, after = self.differential(end + 1)
         length = after - end
         self.plain = True
@@ -233,7 +243,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return the order of a derivative, written as a power at a place (1 without a power), and the place after it.
+        """Return the order of a derivative, which is the power at a place (1 without a power), and the place after it.
 
         Places are counted in tokens from the cursor.
         """
@@ -243,12 +253,12 @@ class OpenFunctionsPart(Cursor):
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return the name at a place, empty if there is none or a blank is before it, and the place after the name."""
+        """Return the name at a place, empty if there is none or if a blank is before it, and the place after it."""
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return the variable of ``dx`` or ``dθ`` at a place (empty if there is none), and the place after it."""
+        """Return the variable x if ``dx`` is at a place, otherwise an empty text, and the place after it."""
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place
@@ -266,7 +276,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, TIME), self.span(token.start))
 
     def varies(self, operand: Node) -> None:
-        """Note that the names in a formula after d/dt may be functions of time."""
+        """Record that the names in a formula after d/dt may be functions of time."""
         for _, node in walk(operand):
             is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
             if is_open or (node.kind == "call" and node.args == (TIME,)):

@@ -1,14 +1,17 @@
-"""The smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices, methods and primes."""
+"""Parsing the smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices and primes."""
 
+import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
 
+from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, TIME
+from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS, TIME
+from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
 from symrot.checker.typed.words import PARTS, SINGLE_ARGUMENT
@@ -26,6 +29,9 @@ CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 """Name after ``Matrix.`` -> the function."""
 
 
+ELEMENTS = (MASS, "dV", "dA", "ds")
+"""The elements of integrals over a body, by its mass, volume, area or length."""
+
 MOST_DOTS = 4
 """The highest order of a derivative that is written with primes or dots."""
 
@@ -40,7 +46,7 @@ class PiecesPart(OpenFunctionsPart):
         while True:
             token = self.token()
             if self.index - first > 5 * DEEPEST_NESTING:
-                raise self.fail("fewer methods and indices after each other")
+                raise self.fail("fewer methods and indices in a row, as in M.T[0, 1],")
             if token.text == "." and token.kind == "mark":
                 if self.is_vector(node) and token.spaced and self.token(1).spaced:
                     return node  # the dot of a scalar product
@@ -63,6 +69,8 @@ class PiecesPart(OpenFunctionsPart):
                 self.plain = True
                 self.next()
                 node = Node("call", CONJUGATE, (node,), self.span(start))
+            elif token.text == "_" and (component := self.component(node)) is not None:
+                node = component
             elif token.text == "°":
                 if self.tokens[self.index - 1].text == "°":
                     raise self.fail("a single degree sign")
@@ -73,28 +81,54 @@ class PiecesPart(OpenFunctionsPart):
             else:
                 return node
 
-    def is_star(self) -> bool:
-        """Return whether a star is the mark of a conjugate, as in ``q v q*``: it is tight, and no factor follows.
+    def component(self, node: Node) -> Node | None:
+        """Read the index after the bracket in ``(ω × r)_i`` and return the component of the cross product."""
+        index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
+        made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
+        self.plain = True
+        self.index += 2 * (made is not None)
+        return made
 
-        In ``q* q'`` the factor that follows is the same letter, after a blank.
+    def is_star(self) -> bool:
+        """Return whether a star marks a conjugate, as in ``q v q*``: no blank is before it, and no factor follows.
+
+        In ``q* q'`` a factor follows, but it is the same letter, after a blank: then the star marks a conjugate
+        too.
         """
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
+            return True
+        if self.is_conjugate_before_factor():
             return True
         ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
         return not self.token().spaced and (
             after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))
         )
 
+    def is_conjugate_before_factor(self) -> bool:
+        """Return whether a star, tight to what it follows and before a blank and a name, is no product sign.
+
+        It is the mark of a conjugate if the text has such a mark that no factor follows, as in ``(p q)* = q* p*``, or
+        if the same name follows after another one, as in ``q* v q``.
+        """
+        if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
+            return False
+        before = self.tokens[self.index - 1]
+        has_mark = any(
+            star.text == "*" and star.tight and (after.kind == "end" or after.text in SIGNS)
+            for star, after in pairwise(self.tokens)
+        )
+        return has_mark or (before.kind == "name" and self.token(2).text == before.text)
+
     def is_skew_cross(self, node: Node) -> bool:
-        """Return whether a cross directly after square brackets, ``[n]x`` or ``[n]×``, makes a skew matrix."""
+        """Return whether a cross directly after square brackets, as in ``[n]x`` or ``[n]×``, means a skew matrix."""
         token, after = self.token(), self.token(1)
         if node.kind != "list" or len(node.args) != 1 or token.text not in ("x", "×") or token.spaced:
             return False
         return self.tokens[self.index - 1].text == "]" and (after.spaced or after.kind in ("end", "mark", "power"))
 
     def is_index(self) -> bool:
-        """Return whether square brackets hold an index, as in ``M[0, 1]``; in ``m[a^2 + b^2]`` they hold a factor."""
+        """Return whether square brackets contain an index, as in ``M[0, 1]``, not a factor as in ``m[a^2 + b^2]``."""
         depth, inside = 0, self.tokens[self.index + 1 :]
         names = False
         for token in inside:
@@ -107,7 +141,7 @@ class PiecesPart(OpenFunctionsPart):
         return True
 
     def method(self, node: Node, start: int) -> Node:
-        """Read a method of a matrix after a dot, such as ``.T``, and return its value as a tree."""
+        """Parse a matrix method after a dot, such as ``.T``, and return the tree of its value."""
         token = self.token()
         if token.kind != "name" or token.text not in METHODS:
             names = ", ".join(name if name == "T" else f"{name}()" for name in METHODS)
@@ -128,7 +162,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return the time derivative that primes or dots after a name mean; ``x'`` may also be a name by itself."""
+        """Return the time derivative that primes or dots after a name mean, or the name ``x'`` if that is meant."""
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
@@ -167,12 +201,14 @@ class PiecesPart(OpenFunctionsPart):
         word = token.text
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
+        if self.source[token.start] == "∂":
+            raise self.fail("a derivative ∂f/∂x (or write diff(f, x))", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
         function = self.vocabulary.function(word)
         if self.as_sympy and self.peek() != "(" and word not in BUILT_IN and word not in self.vocabulary.functions:
-            function = None  # a name in SymPy's text
+            function = None  # a name in SymPy syntax
         elif function is None and word in SINGLE_ARGUMENT and word not in self.vocabulary.symbols:
             function = word  # a function that is not built in, which the interpreter refuses
         if word == "Rational" and self.peek() == "(":
@@ -195,13 +231,18 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Read a name that is not built in; return a symbol, or a function with the arguments in its bracket."""
+        """Parse a name that is not built in; return a symbol, or a function with its arguments in brackets."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if word == "S" and self.peek() == "(" and inside[0] in self.vocabulary.vectors and inside[1] == ")":
             self.note("S(..) is read as the skew matrix of a vector")
             self.plain = True
             return self.called("skew", token)
+        if self.peek() == "(" and inside[1] == ")" and self.is_matrix_of(word, inside[0]):
+            self.plain = True
+            self.index += 3
+            self.note(f"{word}({inside[0]}) is read as the name {word}")
+            return Node("name", word, (), self.span(token.start))
         if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
             return self.called(word, token)
         if self.peek() == "(":
@@ -210,8 +251,14 @@ class PiecesPart(OpenFunctionsPart):
                 self.note(f"{word}(..) is read as the product of {word} and the bracket")
         return Node("name", word, (), self.span(token.start))
 
+    def is_matrix_of(self, word: str, argument: str) -> bool:
+        """Return whether ``R(q)`` before a factor is the name of a matrix that depends on a quaternion: ``R(q) v``."""
+        after = self.token(3)
+        is_name = re.fullmatch("[A-Z]", word) is not None and argument in ("q", "Q", "p") and argument != "t"
+        return is_name and not self.as_sympy and after.kind == "name" and after.spaced
+
     def is_factor(self, word: str) -> bool:
-        """Return whether a name before a bracket is a symbol, so that the bracket is a factor and no argument.
+        """Return whether a name before a bracket is a factor of a product, and not a function with arguments.
 
         It is, if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
         """
@@ -262,14 +309,14 @@ class PiecesPart(OpenFunctionsPart):
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
 
     def holds_skew_vector(self) -> bool:
-        """Return whether the square bracket before the cursor is that of a skew matrix, ``[R ω]×``: no commas, a ×."""
+        """Return whether the square bracket before the cursor is the skew matrix of a vector, ``[R ω]×``."""
         inside = [token.text for token in self.tokens[self.index :]]
         end = inside.index("]") if "]" in inside else 0
         cross = self.token(end + 1)
         return end > 0 and not {",", ";", "["} & {*inside[:end]} and cross.text == "×" and cross.tight
 
     def has_blanks(self, entry: Node) -> bool:
-        """Return whether an entry of a matrix has two names with only blanks between them, which may be two entries."""
+        """Return whether a matrix entry has two names with only blanks between them, which may be two entries."""
         inner = entry.args[0] if entry.kind == "neg" else entry
         pairs = pairwise(inner.args if inner.kind == "product" else ())
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]
@@ -285,19 +332,59 @@ class PiecesPart(OpenFunctionsPart):
             return Node("call", "sqrt", (Node("call", "dot", (inner, inner), self.span(token.start)),))
         return Node("call", "abs", (inner,), self.span(token.start))
 
-    def over_body(self, token: Token) -> Node:
-        """Read ``∫ x² dm``, an integral over a body that the text does not describe; return its tree."""
+    def integral(self, token: Token) -> Node:
+        """Read ``∫_0^1 x dx``, or ``∫ x² dm`` and ``∫ ρ x² dV`` over a body that the text does not describe."""
         self.plain = True
-        self.in_integral = True
+        limits = self.limits() if self.take("_") else None
+        outer = self.in_integral, self.element
+        self.in_integral, self.element = True, self.element_ahead(limits is not None)
         inner = number(1) if self.is_element() else self.expression()
-        self.in_integral = False
         if not self.is_element():
-            raise self.fail("dm at the end of an integral over a body (write integrate(f, (x, from, to)) for others)")
-        self.next()
+            raise self.fail("dm at the end of an integral over a body, or limits and dx, as in ∫_0^1 x dx,")
+        element = self.next().text
+        self.in_integral, self.element = outer
+        if limits is not None:
+            variable = Node("list", ("(", ")"), (Node("name", element[1:]), *limits))
+            return Node("call", "integrate", (inner, variable), self.span(token.start))
+        if element != MASS:
+            mass = over_mass(inner)
+            if mass is None:
+                raise self.fail(f"a density in front of {element}, limits, or dm")
+            self.note(f"the density times {element} is read as dm")
+            inner = mass
         return Node("call", "integral_over_body", (inner,), self.span(token.start))
+
+    def limits(self) -> tuple[Node, Node]:
+        """Read the limits of an integral after ``∫_``, as in ``∫_0^1`` or ``∫₀¹``."""
+        lower = self.limit()
+        if self.token().kind == "power":
+            return lower, number(int(self.next().text))
+        self.expect("^")
+        return lower, self.limit()
+
+    def limit(self) -> Node:
+        negative, first = self.take("-"), self.token()
+        node = self.postfix()
+        if first.kind == "number" and self.token().tight and self.token().text == "pi":
+            node = product([node, self.postfix()])  # ∫_0^2π
+        return Node("neg", None, (node,), node.span) if negative else node
+
+    def element_ahead(self, has_limits: bool) -> str:
+        """Return the element of the integral at the cursor: dm or dV, or with limits the first name such as dx."""
+        depth = inner = 0
+        for before, token in pairwise(self.tokens[self.index - 1 :]):
+            depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
+            if depth < 0 or token.text in SIGNS:
+                break
+            is_short = len(token.text) > 1 and token.text.startswith("d") and token.text not in BUILT_IN
+            is_element = token.kind == "name" and depth == 0 and before.text != "/" and is_short
+            if is_element and inner == 0 and (has_limits or token.text in ELEMENTS):
+                return token.text
+            inner += (token.text == "∫") - is_element
+        return MASS
 
     readers: ClassVar[Mapping[str, Callable[[Any, Token], Node]]] = {
         "number": OpenFunctionsPart.numeral, "name": name, "fraction": fraction, "(": bracket, "[": square_bracket,
-        "|": absolute, "‖": absolute, "∫": over_body, "√": OpenFunctionsPart.root,
+        "|": absolute, "‖": absolute, "∫": integral, "√": OpenFunctionsPart.root,
     }  # fmt: skip
     """Kind of a token, or the mark -> the function that reads a piece that starts with it."""

@@ -1,4 +1,4 @@
-"""The tokens of claims as people type them: ASCII and Unicode, each with its place in the text.
+"""Splitting a claim as people type it into tokens: ASCII and Unicode, each with its place in the text.
 
 Greek letters become their names, dots over letters and primes become derivatives, raised digits become powers. A
 character that means nothing in a formula is refused with its place.
@@ -75,7 +75,7 @@ _FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
 
 _HINTS = {
     "\\": "LaTeX goes into latex = ..",     "∬": "write integrate(f, (x, from, to))",
-    "∭": "write integrate(f, (x, from, to))", "∂": "write diff(f, x)",
+    "∭": "write integrate(f, (x, from, to))",
     "∑": "write the terms of a sum with +", "Σ": "write the terms of a sum with +", "∏": "write the factors with *",
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
@@ -93,18 +93,21 @@ _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
 """Primes between a letter and its subscript."""
 
+_AXIS_PAIR = re.compile("[IJP]_[xyz]'[xyz]'")
+"""A product of inertia about axes with a prime."""
+
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
 _SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
 _DIGITS = re.compile(r"[0-9]+", re.ASCII)
 
 
 def tokens_of(source: str, where: str = "") -> Iterator[Token]:
-    """Yield the tokens of a text; the last one is of kind ``end``.
+    """Yield the tokens of a text; the last one has the kind ``end``.
 
     Raises
     ------
     InputError
-        For a character that means nothing in a formula, with its place and with a character to write instead.
+        For a character that means nothing in a formula; the message suggests another one.
     """
     text, places = _accents_after_letters(*_written_out(source.rstrip()))
     places.append(len(source.rstrip()))
@@ -128,13 +131,13 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
 
 
 def without_dots(name: str) -> str:
-    """Return a name as it is typed, without the dots over it."""
+    """Return a typed name without the dots over it."""
     parts = (_ALIKE.get(part, part) for part in unicodedata.normalize("NFD", name))
     return "".join(part for part in parts if part not in _DOTS)
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
-    """Return the text with a single character for each meaning, and the place of each character in the source."""
+    """Return the text in a single spelling of each sign, and the place of each of its characters in the source."""
     written: list[str] = []
     places: list[int] = []
     for place, character in enumerate(source):
@@ -145,7 +148,7 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text in which a dot or hat before a letter, as text copied from a PDF has it, comes after the letter."""
+    """Return a text in which dots and hats come after their letters; text copied from a PDF has them before."""
     characters, places = list(text), [*places]
     for at in range(len(characters) - 1):
         alone = characters[at] in _OVER and not (at and (characters[at - 1].isalpha() or characters[at - 1] in _OVER))
@@ -167,7 +170,7 @@ def _alike(character: str) -> str:
 
 
 def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield kind, text and end of the tokens that start at a place: one token, or a name and the dots over it."""
+    """Yield (kind, text, end) of the tokens that start at a place: one token, or a name and the dots over it."""
     character = text[at]
     if number := _NUMBER.match(text, at):
         yield "number", number[0], number.end()
@@ -177,6 +180,12 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "fraction", "/".join(_written(part) for part in fraction.groups()), fraction.end()
     elif character in LETTERS:
         yield from _letter(text, at, LETTERS[character])
+    elif character == "∂":
+        yield from _differential(text, at + 1)
+    elif character == "_" and at and text[at - 1] in ")]":
+        yield "mark", "_", at + 1
+    elif text[:at].rstrip().endswith("∫") and (character == "_" or character in _LOWERED):
+        yield from _lower_limit(text, at)
     elif name := _NAME.match(text, at):
         yield from _name(text, at, name)
     elif mark := _MARK.match(text, at):
@@ -197,8 +206,32 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
         yield "fraction", str(Fraction(unicodedata.numeric(character)).limit_denominator(10)), at + 1
 
 
+def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the tokens of the name after ``∂``, with d in front: ``∂T`` is read as ``dT``, and ``∂`` alone as ``d``."""
+    name = _NAME.match(text, at)
+    if text[at : at + 1] in LETTERS:
+        pieces = [*_pieces(text, at)]
+    else:
+        pieces = [*_name(text, at, name)] if name else [("name", "", at)]
+    kind, word, stop = pieces[0]
+    yield kind, f"d{word}", stop
+    yield from pieces[1:]
+
+
+def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
+    """Yield the mark ``_`` of the lower limit of an integral; lowered digits ``∫₀`` are the limit itself."""
+    lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, at)
+    yield "mark", "_", at if lowered else at + 1
+    if lowered is not None:
+        digits = _written(lowered[0])
+        yield "number" if digits.isdigit() else "name", digits, lowered.end()
+
+
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
-    """Yield the tokens of a name of Latin letters. Dots are over its last letter only, so that ``mẍ`` has two names."""
+    """Yield the tokens of a name of Latin letters.
+
+    Dots belong to its last letter only, so that ``mẍ`` has two names.
+    """
     word, stop = name[0], name.end()
     if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
         yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")
@@ -210,6 +243,9 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
         return
     if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
         word, stop = word + LETTERS[text[stop]], stop + 1
+    if _AXIS_PAIR.fullmatch(f"{word}{text[stop : stop + 3]}"):  # I_x'y' is one name, as in LaTeX
+        yield "name", f"{word}_prime{text[stop + 1]}_prime", stop + 3
+        return
     primes = _PRIMED.match(text, stop)
     stop = primes.end() if primes else stop
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, stop)
@@ -223,12 +259,12 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
 
 
 def _written(digits: str) -> str:
-    """Return raised or lowered digits as plain ones."""
+    """Return raised or lowered digits as ordinary digits."""
     return "".join(_RAISED.get(digit, _LOWERED.get(digit, digit)) for digit in digits)
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield a single letter with its subscript, then the dots over it."""
+    """Yield the token of a single letter with its subscript, then the token of the dots over it."""
     stop = at + 1
     dots = 0
     over = ""

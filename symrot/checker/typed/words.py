@@ -26,8 +26,9 @@ __all__ = [
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
     "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
-    "acsch", "tg", "ctg", "cosec",
-    "exp", "log", "ln", "sqrt", "abs", "det", "trace", "tr", "inverse", "transpose",
+    "acsch", "arsinh", "arcosh", "artanh", "arcoth", "arsech", "arcsch",
+    "tg", "ctg", "cosec",
+    "exp", "log", "ln", "sqrt", "abs", "arg", "det", "trace", "tr", "inverse", "transpose",
 )  # fmt: skip
 """The functions that may be written without brackets, ``sin x``."""
 
@@ -38,6 +39,7 @@ ALIASES = {
     "Inverse": "inverse", "arctan2": "atan2", "conj": "conjugate",
     "Re": "real_part", "Im": "imaginary_part",
     **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
+    **{f"ar{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip
 """Other names of built-in functions -> the name in trees. Names that SymPy's own text uses are among them."""
@@ -75,7 +77,7 @@ WORDS_WITH_I = ("if", "in", "is")
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
-    """Return the names and numbers that a word may consist of, in order, and whether splitting it is usual.
+    """Return the names and numbers into which a word may be split, in order, and whether splitting it is usual.
 
     The result is empty if the word is a name. ``alone`` are the names that the text uses separately.
 
@@ -119,7 +121,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
 
 
 class Shorthand(NamedTuple):
-    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its first token, its number of tokens, its formula."""
+    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its place, number of tokens, function and angle."""
 
     place: int
     length: int
@@ -127,7 +129,7 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens of the full formula, cos(theta), with the places of the tokens that it replaces."""
+        """Return the tokens of the full formula cos(theta), at the places of the tokens that it replaces."""
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (
@@ -147,7 +149,7 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb``; none unless several angles have both of them."""
+    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb`` in a text, if several angles have both a c and an s."""
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
@@ -162,7 +164,7 @@ def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the parts of a text that may be short for the cosine or sine of an angle, such as ``cθ``."""
+    """Return the places of a text where a cosine or sine may be abbreviated, as in ``cθ``."""
     short = shorthands_of_letters(tokens)
     if short:
         return short
@@ -182,7 +184,7 @@ def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def lost_power(word: str) -> tuple[str, ...]:
-    """Return sin, ^ and 2 for ``sin2``, which may be sin² copied from a PDF; an empty tuple for other words.
+    """Return sin, ^ and 2 for ``sin2``, which may be sin² with a lost raised digit; an empty tuple for other words.
 
     Examples
     --------
@@ -194,7 +196,7 @@ def lost_power(word: str) -> tuple[str, ...]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens in which the tokens of several names replace each word in ``words``."""
+    """Yield tokens; each word that is a key of ``words`` is replaced by the tokens of the names there."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):

@@ -1,4 +1,4 @@
-"""The check of units: terms of a sum, and the two sides of an equation, must have one unit.
+"""The check of units: the terms of a sum, and the two sides of an equation, must have the same unit.
 
 Units are stated in the claim, or conventional (:data:`symrot.checker.units.units.CONVENTIONAL_UNITS`), or inferred;
 only a contradiction is an error. The entries of a matrix may have different units. The verdict on a claim does not
@@ -27,7 +27,7 @@ def check_dimensions(
     hypotheses: Sequence[tuple[Node, Node]] = (),
     units: Mapping[str, str] | None = None,
 ) -> Dimensions:
-    """Return the check of the units of an equation: whether they fit together.
+    """Check whether the units in an equation fit together, and return the result.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def check_dimensions(
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Return the check of units of an equation between SymPy values; symbols of :mod:`symrot.symbols` bring units."""
+    """Check the units of an equation between SymPy values; the symbols of :mod:`symrot.symbols` have known units."""
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:

@@ -1,4 +1,4 @@
-"""The factors from units to SI units, exact, and the numbers with units in a text such as ``1500 rpm = 157.08 rad/s``.
+"""Exact factors from units to SI units, and texts with numbers and units such as ``1500 rpm = 157.08 rad/s``.
 
 A text has units if it consists of numbers with units, and perhaps of one name for the result. In ``T = 2 m g`` the
 letters are quantities: a letter such as m is read as a unit only if the text has a unit with several letters, or no
@@ -92,13 +92,19 @@ _LATEX = (
 )  # fmt: skip
 """LaTeX of numbers with units -> the same in plain text."""
 
+_COMMON_FRACTIONS = {
+    "½": "0.5", "¼": "0.25", "¾": "0.75", "⅕": "0.2", "⅖": "0.4", "⅛": "0.125", "⅓": "(1/3)", "⅔": "(2/3)",
+}  # fmt: skip
 _TEMPERATURE = re.compile(r"\d\s*(°\s*[CF])(?!\w)")
 _SUPERSCRIPTS = {"²": 2, "³": 3, "⁻¹": -1, "⁻²": -2, "⁻³": -3}
 _OTHER_NAME = re.compile(r"(?<![\w.])[^\W\d_]\w*")
 _FUNCTIONS = (
     "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "arcsin", "arccos", "arctan", "exp", "abs", "pi", "π",
 )  # fmt: skip
-_PLAUSIBLE = ("m", "s", "N", "J", "W", "A", "K", "h", "d", "m/s", "m/s^2", "N m", "N s", "N m s", "1/s", "J s", "m^2")
+_PLAUSIBLE = (
+    "m", "s", "N", "J", "W", "A", "K", "h", "d", "m/s", "m/s^2", "N m", "N s", "N m s", "1/s", "J s", "m^2", "m^3",
+    "s^2", "m^2/s^2", "1/s^2", "s^-1", "s^-2", "m s^-1", "m s^-2", "N/m", "J/s",
+)  # fmt: skip
 
 
 LARGEST_IN_NOTE = 10**6
@@ -106,7 +112,7 @@ LARGEST_IN_NOTE = 10**6
 
 @dataclass(frozen=True)
 class UnitProduct:
-    """A product of units: its text, dimension, and exact factor to SI units."""
+    """A product of units such as ``kg m^2``: its text, its dimension, and its exact factor to SI units."""
 
     text: str
     dimension: Dimension
@@ -115,7 +121,7 @@ class UnitProduct:
 
     @property
     def note(self) -> str:
-        """The factor to SI units as an equation, or an empty text for an SI unit and for a factor that is long."""
+        """The factor to SI units, as ``1 rpm = pi/30 rad/s``; empty for an SI unit, and for a factor that is long."""
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
@@ -134,10 +140,10 @@ class UnitProduct:
 
 @dataclass(frozen=True)
 class Measured:
-    """A text whose numbers have units: the text with a name for each product of units, and these products.
+    """A text whose numbers have units: ``text`` has a name in place of each product of units, and ``units`` lists them.
 
-    ``is_sure`` says that these certainly are units: one of them has several letters, or the text has no other name.
-    ``others`` are other readings of the text, each with the words for what it reads in another way.
+    ``is_sure``: they are certainly units, since one of them has several letters or the text has no other name.
+    ``others`` are other readings (interpretations) of the text, each with words that say what it reads differently.
     """
 
     source: str
@@ -147,7 +153,7 @@ class Measured:
     others: tuple[tuple[str, "Measured"], ...] = ()
 
     def restored(self, text: str) -> str:
-        """Return a text about the claim with the units in place of their names."""
+        """Return a text about the claim in which the units replace the names that stand for them."""
         return re.sub(
             r"(\w)?\*?(unit_\d+)", lambda match: f"{match[1] or ''} {self.units[match[2]].text}".lstrip(), text
         )
@@ -155,14 +161,14 @@ class Measured:
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to read a text: the other meanings of units, and whether a number with its unit divides as a whole."""
+    """One way to read a text: the units with their other meaning, and whether ``a/2 m`` divides by all of ``2 m``."""
 
     meanings: frozenset[str] = frozenset()
     by_whole: bool = True
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with names for its units, or None for a text that has no numbers with units.
+    """Return a text with names in place of its units, or None for a text without numbers that have units.
 
     Raises
     ------
@@ -198,15 +204,17 @@ def measured_text(source: str) -> Measured | None:
 
 
 def _plain(source: str) -> str | None:
-    """Return a text with units without the commands of LaTeX; None if some are left."""
+    """Return a text with units in which plain signs replace LaTeX commands; None if other LaTeX commands remain."""
     plain = source
     for pattern, instead in _LATEX:
         plain = re.sub(pattern, instead, plain)
+    for sign, value in _COMMON_FRACTIONS.items():
+        plain = plain.replace(sign, value)
     return None if "\\" in plain or "{" in plain else plain.replace("−", "-")
 
 
 def numbers_of_latex(source: str) -> str:
-    r"""Return plain text for LaTeX without names, such as ``\pi = 3.14``, in which a decimal number is rounded; or "".
+    r"""Return plain text for LaTeX that has only numbers, one of them a rounded decimal number: ``\pi = 3.14``. Or "".
 
     Examples
     --------
@@ -240,15 +248,16 @@ def _read(plain: str, way: _Way) -> Measured | None:
     if typed == {"°"} and not re.search(rf"(^|=)\s*-?{_NUMBER}\s*°\s*($|=)", plain):
         return None  # an angle in degrees inside of a formula
     names = [name for name in _OTHER_NAME.findall(text) if name not in _FUNCTIONS and name not in units]
+    names = [name for name in names if name not in _SUPERSCRIPTS]
     if not units or (are_factors and not has_long) or not _only_units(text, names, units, has_long):
         return None
     return Measured(plain, text, units, has_long or not names)
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return the beginning of a chain of equations that has letters, and its end that has numbers with units only.
+    """Split a chain of equations into its beginning with letters and its end, where all sides are numbers with units.
 
-    Both are empty if there is no such end of at least two links.
+    Both are empty if fewer than two sides at the end are such numbers.
 
     Examples
     --------
@@ -264,7 +273,7 @@ def numeric_end(source: str) -> tuple[str, str]:
 
 
 def unit_beside_letters(source: str) -> str:
-    """Return the first number with a unit, in a text with other letters, that is surely no product of letters; or "".
+    """Return the first number with a unit in a text with other letters, if it is surely no product of letters; or "".
 
     It is sure if the unit has several letters, or if a side is only this number with a unit such as m/s^2, and the
     other sides have none of these letters.
@@ -288,26 +297,34 @@ def unit_beside_letters(source: str) -> str:
             continue
         typed = {piece["unit"] for piece in _PIECE.finditer(whole[3])}
         others = {name for other in sides[:place] + sides[place + 1 :] for name in re.findall(r"[^\W\d_]", other)}
-        if len(typed) > 1 and _unit_product(whole[3]).text in _PLAUSIBLE and not typed & others:
+        if len(typed) > 1 and _is_plausible(_unit_product(whole[3])) and not typed & others:
             return side.strip()
     return ""
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text with units has no other names than one for the result, on the left."""
+    """Return whether a text has no names but those of units, except one for the result on its left side."""
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):
         return False
     if names:
-        return has_long or all(unit.text in _PLAUSIBLE for unit in units.values())
+        return has_long or all(_is_plausible(unit) for unit in units.values())
     if not has_long and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
         return False  # the weight m g
     sides = re.split(r"==?", text)
     return has_long or (len(sides) > 1 and all("unit_" in side for side in sides))
 
 
+def _is_plausible(unit: UnitProduct) -> bool:
+    """Return whether a product of single letters is usually a unit, such as m/s²."""
+    plain = unit.text
+    for digits, power in _SUPERSCRIPTS.items():
+        plain = plain.replace(digits, f"^{power}")
+    return plain.replace("·", " ").replace("⋅", " ") in _PLAUSIBLE
+
+
 def _pieces(text: str) -> Iterator[tuple[str, int]]:
-    """Yield the units of a product with their powers."""
+    """Yield the units in a product such as ``kg m^2/s``, each with its power."""
     for match in _PIECE.finditer(text):
         mark = match["power"]
         power = _SUPERSCRIPTS[mark] if mark in _SUPERSCRIPTS else int(re.sub(r"[\^*()]", "", mark) or 1)
@@ -316,7 +333,7 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
 
 
 def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
-    """Return a product of units, some of them with their other meaning."""
+    """Return the product of units that a text states. Units in ``meanings`` have their less usual meaning."""
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0
     for name, power in _pieces(text):

@@ -14,7 +14,7 @@ __all__ = ["CALLS"]
 
 
 def _of_number(inference: UnitInference, node: Node) -> Value:
-    """Return the dimension of a function such as sin, whose argument and value must be pure numbers."""
+    """Return the dimension of a call such as sin(x), whose argument and value must be pure numbers."""
     for argument in node.args:
         inference.plain(
             inference.value(argument), f"the argument of {node.value}, {piece_text(argument)}, is {{0}}, not a number"
@@ -23,7 +23,7 @@ def _of_number(inference: UnitInference, node: Node) -> Value:
 
 
 def _alike(inference: UnitInference, node: Node) -> Value:
-    """Return the dimension of a function such as atan2: a pure number, while both arguments have the same unit."""
+    """Return the dimension of a call such as atan2(y, x): a pure number. Its arguments must have the same unit."""
     first, second = (inference.value(argument) for argument in node.args)
     inference.same(first, second, f"the arguments of {node.value} are {{0}} and {{1}}")
     return NOTHING
@@ -104,7 +104,10 @@ def _product_of_quaternions(inference: UnitInference, node: Node) -> Value:
 
 
 def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
-    """Return the dimensions of a quaternion product, whose component n is the sum of +-p[i] q[j] with i xor j = n."""
+    """Return the dimensions of the components of a quaternion product.
+
+    Component n is a sum of the products p[i] q[j] with i xor j = n.
+    """
     return [
         inference.total([inference.times(p[i], q[i ^ n]) for i in range(4)], "a product of quaternions")
         for n in range(4)

@@ -1,4 +1,4 @@
-"""The units of the pieces of a formula (names, sums, products, powers, matrices), and their contradictions."""
+"""The units of the parts of a formula (names, sums, products, powers, matrices), and contradictions between them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,12 +34,12 @@ Rows = tuple[tuple[Any, ...], ...]
 
 
 class Unreadable(Exception):
-    """An exception for matrices whose shapes do not fit, or for a part of a formula without a known dimension."""
+    """Exception for a part of a formula whose dimension cannot be told, and for matrices whose shapes do not fit."""
 
 
 @dataclass
 class UnitInference:
-    """The inference of the units of one claim: it follows units through trees, and collects contradictions.
+    """The inference of the units in one claim: it derives the unit of each part of a tree and collects contradictions.
 
     Attributes
     ----------
@@ -60,13 +60,13 @@ class UnitInference:
     known : bool
         Whether any unit is known.
     unitless : bool
-        Whether a definition is a number without its unit; other numbers may then lack their units as well.
+        Whether a definition is a number without its unit; other numbers may then lack their units, too.
     fresh : int
-        The number of unknown units so far.
+        The number of unknown units introduced so far.
     faults : list of str
         Contradictions, as sentences.
     place : str
-        Words for the part of the claim that is being followed, for messages.
+        Words for the part of the claim that is being examined, for messages.
     """
 
     units: dict[str, Dimension]
@@ -85,7 +85,11 @@ class UnitInference:
     # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Give a name the dimension of its definition; for a bare number, assume a quantity whose unit was left out."""
+        """Record the dimension of a defined name.
+
+        If the definition is a bare number, its unit may have been left out: the name gets its usual or an
+        unknown unit.
+        """
         self.place = f"in the definition of {name}"
         value = self.value(tree)
         if _bare(tree):
@@ -111,7 +115,7 @@ class UnitInference:
         self.same(values[0], values[1], f"{prefix}the left side is {{0}}, the right side is {{1}}")
 
     def inferred(self) -> dict[str, str]:
-        """Return the units that follow for the names whose unit is neither stated nor conventional."""
+        """Return the units that the equations imply for names whose unit is neither stated nor conventional."""
         units = {}
         for name in sorted(self.names & self.system.solved.keys()):
             unit = self.system.reduced({name: Fraction(1)})
@@ -142,7 +146,7 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether letters such as m and t mean mass and time: if units are stated, or longer names have one."""
+        """Return whether m and t mean mass and time: if units are stated, or a longer name has a conventional unit."""
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
@@ -155,7 +159,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, entry by entry, and return it; ``words`` state a fault."""
+        """Require that two values have equal dimensions, and return them; ``words`` is the message if they differ."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
@@ -188,7 +192,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar has no unit, and return its dimension; ``words`` are the message if it has one."""
+        """Require that a scalar has no unit, and return its dimension; ``words`` is the message if it has one."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -197,7 +201,7 @@ class UnitInference:
     # -- trees ------------------------------------------------------------------------------------------------------
 
     def value(self, node: Node) -> Value:
-        """Return the dimension of a piece of a formula."""
+        """Return the dimension of a part of a formula."""
         return _VALUE[node.kind](self, node)
 
     def scalar(self, node: Node) -> Dimension | None:
@@ -215,7 +219,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Return the dimension of a sum, after requiring that all its terms have the same dimension."""
+        """Require that all terms of a sum have the same dimension, and return it."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
@@ -269,7 +273,7 @@ class UnitInference:
 
 
 def angles_of(tree: Node) -> Iterator[str]:
-    """Yield single letters that must be angles in a formula: ``g`` in ``sin(2*g)``, but not ``t`` in ``sin(w*t)``."""
+    """Yield the single letters that must be angles: ``g`` in ``sin(2*g)``, but not ``t`` in ``sin(w*t)``."""
     for _, node in walk(tree):
         if node.kind == "call" and node.value in ANGLE_FUNCTIONS:
             for argument in node.args:
@@ -292,13 +296,13 @@ def _minor(rows: Rows, row: int, column: int) -> Rows:
 
 
 def _bare(tree: Node) -> bool:
-    """Return whether a tree is made of numbers, without a symbol."""
+    """Return whether a tree contains only numbers, no symbol."""
     loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
     return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
 
 
 def _is_unit(tree: Node) -> bool:
-    """Return whether all numbers in a tree are 0 and 1, as in a unit vector or a norm of 1."""
+    """Return whether all numbers in a tree are 0 or 1, as in a unit vector or a norm of 1."""
     return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
         node.kind == "name" for _, node in walk(tree)
     )

@@ -1,4 +1,4 @@
-"""Units as products of powers: reading, printing, and equations between them, solved over the rationals.
+"""Units as products of powers: parsing, printing, and equations between units, solved over the rationals.
 
 A dimension maps bases (kg, m, s, A, K, mol, cd), and symbols of unknown unit, to rational exponents; an angle has no
 dimension. Scales are ignored: mm and m have the same dimension.
@@ -114,7 +114,7 @@ def read_unit(text: str, where: str = "") -> Dimension:
 
 
 def unit_text(dimension: Dimension) -> str:
-    """Return a dimension as text: ``kg m^2/s^2``; ``1`` for a number; an unknown unit as ``[x]``."""
+    """Return a dimension as text: ``kg m^2/s^2``; ``1`` for a pure number; ``[x]`` for the unknown unit of x."""
     order = [*(f"[{base}]" for base in BASES), *sorted(dimension)]
     names = [name for name in dict.fromkeys(order) if name in dimension]
     above = [_shown_power(name, dimension[name]) for name in names if dimension[name] > 0]
@@ -141,21 +141,21 @@ _KNOWN = {name: _plain(text) for text, names in DERIVED.items() for name in name
 
 @dataclass
 class UnitSystem:
-    """Equations between dimensions (exponents of base units); ``solved`` maps unknown units to their values."""
+    """Equations between dimensions. ``solved`` maps each unknown unit that the equations determine to its value."""
 
     solved: dict[str, Dimension] = field(default_factory=dict)
 
     def reduced(self, dimension: Dimension) -> Dimension:
-        """Return a dimension in which solved units are replaced by their values."""
+        """Return a dimension in which unknown units are replaced by the values that the equations give them."""
         result: Dimension = NOTHING
         for name, power in dimension.items():
             result = times(result, raised(self.solved.get(name, {name: Fraction(1)}), power))
         return result
 
     def equate(self, first: Dimension, second: Dimension) -> bool:
-        """Add the equation that two dimensions are equal.
+        """Add the equation that two dimensions are equal, and return True.
 
-        Return True. If the equation contradicts earlier ones, add nothing and return False.
+        If the equation contradicts earlier ones, add nothing and return False.
         """
         quotient = self.reduced(over(first, second))
         unknown = [name for name in quotient if not name.startswith("[")]

@@ -51,7 +51,7 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return two doubles with the same sum; the second is at most half a unit in the last place of the first."""
+    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double."""
     total = high + low
     return total, low - (total - high)
 
@@ -107,7 +107,7 @@ def _coefficients() -> list[tuple[float, float]]:
 
 @cache
 def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
-    """Return the powers 2^(j/8), j = 0 to 7, as pairs of doubles, and ln 2/8 as a sum of three doubles.
+    """Return constants for :func:`exponential`: 2^(j/8), j = 0 to 7, as pairs of doubles, and ln 2/8 as three doubles.
 
     The first and second of the three doubles have so few bits that their products with any j are exact.
     """

@@ -1,4 +1,4 @@
-"""Rotation matrices of exact fractions and their quaternions, correct to 30 digits, for changes of axes."""
+"""Rotation matrices whose entries are fractions, and their quaternions, to 30 digits; they convert between axes."""
 
 from collections.abc import Sequence
 from fractions import Fraction

@@ -64,8 +64,8 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86.
 
-    An attitude needs no more digits. Because of this rounding, double-double arithmetic on arrays of attitudes gives
-    the same doubles.
+    An attitude needs no more digits. Since the low parts are rounded to a coarser grid, arithmetic on arrays
+    (:mod:`symrot.closed_form.batches`) can compute exactly the same doubles.
     """
     result: list[float] = []
     for value in values:
@@ -74,7 +74,10 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as one list hi, lo, hi, lo, ..; lo is a multiple of GRID times the last bit of hi."""
+    """Return ratios of integers as one list of pairs hi, lo, hi, lo, ..; each sum hi + lo approximates a ratio.
+
+    lo is rounded to a multiple of GRID times the last bit of hi, so that other algorithms can compute the same doubles.
+    """
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
@@ -104,7 +107,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
     """Return ``values`` as a list after checks: they must be ``length`` real numbers of a size that motions allow.
 
     Floats, ints and Fractions are returned unchanged; other real numbers, such as NumPy's, are converted to floats.
-    ``what`` is the name of the argument in error messages.
+    ``what`` is the name of the argument in error messages; no value may be less than ``least``.
 
     Raises
     ------
@@ -133,7 +136,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether bit lengths alone prove that a fraction is within the bounds that :func:`numbers` allows."""
+    """Return whether a fraction is certainly within the bounds of :func:`numbers`, by a quick look at bit lengths."""
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

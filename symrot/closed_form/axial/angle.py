@@ -61,7 +61,7 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """A multiple of the angle of rotation of a driven body, as a function of time.
+    """Function from time to a fixed multiple (``share``) of the angle of rotation of a driven body.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle modulo one revolution, in double-double numbers, by the series for small ``-decay t``."""
+        """Return the angle modulo one revolution, in double-double numbers; its series needs small ``|decay t|``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)
@@ -130,7 +130,10 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the angle modulo one revolution, in double-double numbers, as a steady plus a transient part."""
+        """Return the angle modulo one revolution, in double-double numbers, for any ``decay t`` that is not small.
+
+        The angle is the sum of a part that grows steadily and a transient part that contains ``exp(-decay t)``.
+        """
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -140,10 +143,11 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return four constants as fixed-point integers with ``bits`` bits after the binary point.
+        """Return the constants of :meth:`_exactly` as fixed-point integers with ``bits`` bits after the binary point.
 
-        They are: the final rate (or the initial rate without damping), in revolutions per second; the factor of the
-        transient (or quadratic) part of the angle, in revolutions; the decay rate; and ln 2.
+        With damping they are the final rate, in revolutions per second, the factor of the transient part of the angle,
+        in revolutions, the decay rate and ln 2. Without damping, the first two are the initial rate and the factor of
+        the quadratic part.
         """
         if bits not in self._scaled:
             from mpmath import mp

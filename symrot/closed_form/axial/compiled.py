@@ -136,14 +136,18 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the C struct `axial`; ``turned``: the body also rotates across the axis."""
+        """Return the first numbers of the C struct `axial`, which do not depend on the initial state.
+
+        ``turned`` says whether the body also rotates about an axis across the driven axis.
+        """
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
         """Return the values of those members of the C struct `axial` (axial.h) that depend on the initial rate, rad/s.
 
-        They are four numbers and one struct `turning`: `lag` if ``turned`` (the angle by which the transverse angular
-        velocity rotates in the body), otherwise `half` (half the angle of rotation, for the attitude).
+        They are four numbers and the constants of one angle. If the body also rotates across the driven axis
+        (``turned``), this is `lag`, the angle by which the transverse angular velocity rotates in the body; otherwise
+        it is `half`, half the angle of rotation, from which the attitude follows.
         """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
@@ -162,9 +166,10 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor that converts the angle in radians to `lag` or `half` in revolutions, and constants for C.
+        """Return the ratio of `lag` or `half` (see :meth:`moving`), in revolutions, to the angle of rotation, rad.
 
-        The first two results are the factor as an integer, and the number of its bits after the binary point.
+        The ratio is given as an integer and the number of its bits after the binary point. The third result lists the
+        constants of `lag` or `half` for C that do not depend on the initial state.
         """
         turn, bits = _HALF
         if turned:
@@ -186,7 +191,7 @@ class Constants:
         rates : 3 Fractions
             Angular velocity at the start, rad/s.
         attitude : 2 lists of 4 floats
-            The two quaternions that are multiplied by cosine and sine of half the angle.
+            Quaternions P and Q: the attitude is P cos(angle/2) + Q sin(angle/2).
         """
         evaluate, record = functions()
         one, other = rates[self.axis - 2], rates[self.axis - 1]
@@ -199,9 +204,10 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def shapes(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries of the matrix `omega` of axial.h, row by row.
+        """Return the entries of the matrix `omega` of axial.h, row by row, for the initial transverse rates.
 
-        The matrix maps transverse and axial rates to body components of the angular velocity.
+        The matrix maps three numbers to the body components of the angular velocity: the damped cosine and sine of the
+        angle by which the transverse angular velocity has rotated in the body, and the axial rate.
         """
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
@@ -211,7 +217,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Return top/bottom rad in revolutions, as an integer and its number of bits after the binary point."""
+    """Convert top/bottom rad to revolutions: an integer, and its number of bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits
@@ -226,5 +232,5 @@ def _nearest(top: int, bottom: int) -> float:
         return top / bottom
     except OverflowError:
         raise InputError(
-            "expected a torque, damping and angular velocity whose rates are finite doubles, got more than 1e308"
+            "expected a torque, damping and angular velocity whose rates are finite doubles, got rates above 1e308"
         ) from None

@@ -91,7 +91,7 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis."""
+        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis, at times t."""
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -170,9 +170,9 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
+    """Return a function that takes an initial state and returns the motion of one driven body from it.
 
-    Constants that do not depend on the initial state are computed once.
+    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
     """
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
@@ -217,7 +217,10 @@ class Driven:
         return self._moving(rates, [float(x) for x in number.unit(components)])
 
     def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
-        """Return the motion from initial rates, rad/s, and a unit quaternion; only the rates are checked."""
+        """Return the motion from an initial angular velocity, rad/s, and a unit quaternion.
+
+        Unlike :meth:`motion`, it does not check or normalise the quaternion.
+        """
         return self._moving([Fraction(x) for x in numbers("omega", rates, 3)], attitude)
 
     def _moving(self, rates: list[Fraction], attitude: list[float]) -> AxialMotion:
@@ -225,7 +228,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the product ``q * e``, where e is the unit quaternion of a rotation by 180 degrees about the body axis."""
+    """Return the attitude q after a further rotation by 180 degrees about a body axis, as a quaternion."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

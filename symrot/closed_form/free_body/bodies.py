@@ -66,10 +66,11 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return angular velocities of a :func:`fixed_body` along its principal axes, their defects, and doubtful rows.
+    """Return the components of n angular velocities along a body's principal axes, and the defects of the motions.
 
-    The first two results have the shapes (n, 6) and (n, 2): hi and lo of each number. The third result holds the
-    indices of the rows that must be computed exactly.
+    The results have the shapes (n, 6) and (n, 2): hi and lo of each number. The third result lists the indices of the
+    rows whose last digit is in doubt, which the caller must compute exactly. ``body`` is a result of
+    :func:`fixed_body`; the module's text defines the defect.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -79,10 +80,10 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of doubtful rows.
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of the rows in doubt.
 
-    Doubtful rows must be computed exactly. ``moments`` are principal moments and ``omega`` angular velocities along the
-    principal axes, both of shape (n, 3).
+    Rows are in doubt if their last digit is not certain; the caller must compute them exactly. ``moments`` are
+    principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
@@ -92,7 +93,10 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """Arguments of the C function symrot_free_body_prepare for many bodies, and the indices of doubtful bodies."""
+    """Arguments of the C function symrot_free_body_prepare for many bodies, and the indices of doubtful bodies.
+
+    The constants of a doubtful body have a last digit in doubt, so that the caller must compute them exactly.
+    """
 
     moments: Floats  # (n, 6)
     rates: Floats  # (n, 6)

@@ -67,7 +67,7 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one free body, whose given axes need not be principal.
+    """Return a function that takes an initial state and returns the motion of one free body in any body axes.
 
     Angular velocity and attitude refer to the given axes. The principal axes are known to 110 digits; the constants of
     the motion are computed from them before they are rounded to doubles.
@@ -95,13 +95,16 @@ class FreeRigidBody:
 
     @cached_property
     def fixed(self) -> Any:
-        """Moments and principal axes as integers, for the C function that computes components along these axes."""
+        """Principal moments and axes as integers, as :func:`symrot.closed_form.free_body.bodies.fixed_body` returns."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return an angular velocity along the principal axes: integer numerators and their common denominator."""
+        """Return the components of an angular velocity along the principal axes, as fractions of one denominator.
+
+        The result is the list of the three integer numerators, and the common denominator.
+        """
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
@@ -131,8 +134,8 @@ class FreeRigidBody:
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a free body as one list hi, lo, hi, lo, ..
 
-    The defect is scaled as in :class:`Defect`. All are computed exactly, since differences of doubles would lose
-    digits.
+    Each sum hi + lo is one of the numbers. They are computed exactly, since differences of doubles would lose digits;
+    the defect is scaled as in :class:`Defect`.
     """
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
@@ -141,7 +144,7 @@ def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[flo
 def gaps(i: list[int], shared: int) -> list[float]:
     """Return the differences I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
 
-    The moments are integer numerators ``i`` over the common denominator ``shared``.
+    Each sum hi + lo is a difference. The moments are the integers ``i``, divided by the common denominator ``shared``.
     """
     differences: list[float] = []
     for k in range(3):
@@ -165,7 +168,7 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect |L|^2 - 2 T I_mid as hi, lo, for body rates that are integers."""
+        """Return the scaled defect |L|^2 - 2 T I_mid for integer body rates, as two doubles whose sum it is."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

@@ -45,7 +45,10 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one gyrostat; the arguments are as for :func:`motion`."""
+    """Return a function that takes an initial state and returns the motion of one gyrostat from it.
+
+    The arguments are as for :func:`motion`.
+    """
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 

@@ -77,16 +77,19 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return a function from initial states to motions of one heavy top; the arguments are as for :func:`motion`.
+    """Return a function that takes an initial state and returns the motion of one heavy top from it.
 
-    Constants that do not depend on the initial state are computed once.
+    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
     """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A symmetric heavy top with the constants that all its motions share: moments, weight times distance, and axes."""
+    """A symmetric heavy top with the constants that all its motions share.
+
+    They are the moments of inertia, the weight times the distance of the centre of mass from the fixed point, and axes.
+    """
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -160,13 +163,14 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are those of the scene, so that no attitude has to be converted."""
+        """Whether these axes are the same as the axes of the scene, so that attitudes need no conversion."""
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Return an attitude converted to these axes of body and space, as 8 doubles: hi and lo of each component.
+        """Convert an attitude to the axes of body and space in which the formulas of a heavy top hold.
 
-        They are rounded as in :func:`symrot.closed_form.arithmetic.pairs.attitude`.
+        The result is 8 doubles, hi and lo of each component of the quaternion, rounded as in
+        :func:`symrot.closed_form.arithmetic.pairs.attitude`.
         """
         if self.plain:
             return attitude(quaternion)

@@ -190,10 +190,10 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return the elliptic functions, the theta sum of the attitude, and the phase in half revolutions.
+        """Return, at the times t, the functions from which angular velocity and attitude are computed.
 
-        The elliptic functions are cn, sn and dn, each times its amplitude. The complex theta sum is a pair: its real
-        and its imaginary part.
+        They are: the elliptic functions cn, sn and dn, each times its amplitude; the theta series of the attitude, as
+        real and imaginary part; and the phase in half revolutions.
         """
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
@@ -228,7 +228,10 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return the list I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, computed from exact fractions."""
+    """Return the list I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a motion.
+
+    Both are computed from exact fractions. The sign of the defect tells around which axis the motion goes.
+    """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
@@ -244,7 +247,7 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return which principal axes, with which signs, are e1, e2, e3 of the formulas, and the sign of I3 - I2."""
+    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

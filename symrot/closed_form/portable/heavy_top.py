@@ -1,8 +1,8 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
 The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude. Numbers
-have 120 digits, so that differences may lose many of them and the constants follow directly from the roots of the
-cubic.
+have 120 digits. Differences may therefore lose many digits, so that the constants are computed directly from the roots
+of the cubic, without the rearrangements that doubles need.
 """
 
 from typing import Any
@@ -160,10 +160,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions of the theta series of alpha (i = 0) or beta (i = 1) at ``place``, in four lists.
+        """Return the terms' functions in the theta series of alpha (i = 0) or beta (i = 1), at the argument ``place``.
 
-        The lists are: the functions in the real part, the functions in the imaginary part, the derivatives of the
-        former, and the derivatives of the latter.
+        There are four lists: the functions in the real part of the series, those in its imaginary part, and the
+        derivatives of the functions in both parts.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -189,7 +189,10 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series: alpha and beta, or their rates, get the initial values."""
+        """Set the constant factors of the theta series, so that alpha and beta agree with the initial state.
+
+        If alpha or beta is nearly zero at the start, its rate is used instead.
+        """
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -281,7 +284,10 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2. Nearly equal roots are made equal."""
+    """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s.
+
+    The arguments are M (weight times distance), 2 (E - M), D and l. Nearly equal roots are made equal.
+    """
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
@@ -296,6 +302,6 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
 
 
 def _zero(square: Any, m: Any) -> Any:
-    """Return y with sn(y)^2 = ``square``, for the elliptic function sn of parameter 1 - m."""
+    """Return the argument y at which sn(y)^2 = ``square``, for the elliptic function sn of parameter 1 - m."""
     square = min(max(square, mpf(0)), mpf(1))
     return mp.sqrt(square) * mp.elliprf(1 - square, 1 - (1 - m) * square, 1)

@@ -22,17 +22,17 @@ LARGEST = 80.0  # argument of a hyperbolic function above which the results are 
 
 
 def number(high: float, low: float) -> Any:
-    """Return the number ``high + low`` at mpmath's current precision."""
+    """Return the sum of two doubles as one mpmath number, at mpmath's current precision."""
     return mpf(high) + mpf(low)
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Return the sums hi + lo of a list hi, lo, hi, lo, .. as mpmath numbers."""
+    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers: each is a sum hi + lo."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
 def power_of_two(value: Any) -> Any:
-    """Return a power of two near a positive number, or 1 for zero."""
+    """Return a power of two near a positive number, or 1 for zero; dividing by it scales numbers without rounding."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 
@@ -43,7 +43,7 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its start, each as a pair hi, lo."""
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
@@ -59,9 +59,9 @@ class Phase(NamedTuple):
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase plus ``more``, reduced modulo 1/``parts`` of a revolution, and the number of removed parts.
+        """Reduce the phase plus ``more`` revolutions to within half of 1/``parts`` of a revolution around zero.
 
-        The number is only correct modulo ``parts``, because whole revolutions do not matter.
+        Return the reduced phase, and the number of parts by which it was reduced, modulo ``parts``.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
@@ -98,7 +98,10 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the results of :meth:`argument` for a phase that is not periodic: 0, 1 and the phase itself."""
+        """Return three results like those of :meth:`argument`, but for a phase that is not periodic.
+
+        The reduced phase is 0, the sign is 1, and the argument is the phase itself.
+        """
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 
@@ -108,14 +111,17 @@ def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> 
 
 
 def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple[Floats, Floats]:
-    """Return nome**weight*cosh(order*v) and nome**weight*sinh(order*v), even if cosh would overflow."""
+    """Return nome**weight*cosh(order*v) and nome**weight*sinh(order*v), even if cosh alone would overflow.
+
+    ``log_nome`` is the logarithm of the nome of a theta series.
+    """
     log = log_nome * weight if weight else 0.0
     up, down = np.exp(log + order * v), np.exp(log - order * v)
     return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
-    """Return the pairs (sine, cosine) of 0, 1, 2, .. times an angle, twice as many as a series has terms."""
+    """Return (sine, cosine) of 0, 1, 2, .. times an angle, given its sine and cosine, for all terms of a series."""
     pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
         s, c = pairs[-1]

@@ -50,5 +50,5 @@ class Axes:
 
 
 def mapping(images: Sequence[Sequence[Any]]) -> Floats:
-    """Return the matrix whose columns are ``images``; each entry is rounded to a double."""
+    """Return the matrix that maps the basis vectors to ``images``, which are its columns, as an array of doubles."""
     return np.array([[float(x) for x in image] for image in images]).T

@@ -106,7 +106,8 @@ class PortableSpinUp:
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
         """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times far from resonance.
 
-        ``side`` holds the constants of the motion before or after resonance.
+        The module :mod:`symrot.closed_form.spin_up.motion` explains these words. ``side`` holds the constants of the
+        motion before or after resonance, and ``omega`` the axial rate Omega at the times ``t``.
         """
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
@@ -145,7 +146,8 @@ class PortableSpinUp:
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
         """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times near resonance.
 
-        Taylor polynomials in x = Omega/sqrt(s) give the rotation since x = 0.
+        Taylor polynomials in x = Omega/sqrt(s) give the rotation since resonance (x = 0). The first argument, the
+        times, is not used.
         """
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)

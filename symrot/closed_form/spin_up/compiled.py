@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the third argument of the C function ``symrot_spin_up_prepare``: NEAR, WIDE and MOST of series.py."""
+    """Return the limits that the C function ``symrot_spin_up_prepare`` takes: NEAR, WIDE and MOST of series.py."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -86,9 +86,9 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return the constants as a ctypes array, the address of this array, and the table of Taylor polynomials.
+        """Let C compute the constants of the motion; return them as a ctypes array, with its address and ``table``.
 
-        If an array is passed as ``table``, the C function fills it with the polynomials.
+        If ``table`` is an array, the C function fills it with the Taylor polynomials for samples near resonance.
         """
         bound = functions()
         constants = bound.record()

@@ -41,7 +41,7 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of the values, at least one of which is not zero."""
+    """Return a power of two near the largest of the values, as a unit for rates; one of them must not be zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
@@ -101,7 +101,7 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the rotation from the axes e1, e2, e3 of the formulas to the axes of the body.
+        """Return the rotation from the axes e1, e2, e3 used in the formulas to the axes of the body, as a quaternion.
 
         e3 points along the torque, e1 along the transverse angular velocity at the start.
         """
@@ -116,7 +116,10 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1, 0 or 1 if the motion with the axial rate ``omega`` is before, near or after resonance."""
+        """Return -1 before, 0 near and 1 after resonance, for a motion whose axial rate Omega is ``omega``.
+
+        If the asymptotic series holds everywhere (large kappa), the result is always 1.
+        """
         if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
@@ -135,9 +138,10 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the time, the rate Omega and the rotation from which formulas before or after resonance count.
+        """Return the state at which the formulas for one side of resonance begin: time, rate Omega and rotation.
 
-        ``side`` is -1 before and 1 after resonance. The rotation is that of the body since the start.
+        ``side`` is -1 before and 1 after resonance. The state is the initial one if the motion starts on this side,
+        otherwise it lies at the boundary of resonance. The rotation is counted from the start of the motion.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
@@ -145,7 +149,10 @@ class Integers:
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants for NumPy; if not ``near``, those for samples near and beyond resonance are zero."""
+        """Return the constants with which NumPy computes samples.
+
+        If ``near`` is false, all samples lie far from resonance on the side of the start; the other constants are zero.
+        """
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -176,7 +183,7 @@ class Integers:
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times from ``first`` to ``last`` certainly lie far before resonance, or far after it."""
+        """Return whether all times from ``first`` to ``last`` certainly lie far from resonance, on one side of it."""
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))

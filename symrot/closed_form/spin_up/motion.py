@@ -89,7 +89,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers, and write, the samples with too many revolutions for double-double numbers."""
+        """Compute in integers all samples with too many revolutions for double-double numbers; fill the arrays."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -128,9 +128,9 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function from initial states to motions of one driven body; the arguments are as for :func:`motion`.
+    """Return a function that takes an initial state and returns the motion of one driven body from it.
 
-    Constants that do not depend on the initial state are computed once.
+    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)

@@ -34,7 +34,7 @@ _SMALL = Fraction(1, 1 << _HALVINGS)
 
 
 def fixed(values: Sequence[Fraction]) -> Quaternion:
-    """Return a unit quaternion, given in fractions, as fixed-point integers."""
+    """Convert a unit quaternion from fractions to fixed-point integers."""
     q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
     return q0, q1, q2, q3
 
@@ -84,8 +84,9 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The constants of a sweep through resonance: W, the sweep rate s, and the asymptotic series for kappa^2 = W^2/s.
+    """The constants of a driven body's motion far from resonance: W, s and the asymptotic series for kappa^2 = W^2/s.
 
+    W is the transverse angular velocity and s the rate at which the axial one, Omega, grows; resonance is at Omega = 0.
     :mod:`symrot.closed_form.spin_up.motion` explains these quantities.
     """
 
@@ -99,19 +100,25 @@ class Sweep:
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return sine and cosine of the angle from the third axis to omega, and the variable y of the series."""
+        """Return the sine and cosine of the angle between the angular velocity (W, 0, Omega) and the third axis, and y.
+
+        y is the variable of the polynomials in :class:`symrot.closed_form.spin_up.series.Series`.
+        """
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the correction delta, rad, by which the angle of rotation exceeds the integral of S."""
+        """Return the correction delta, rad: the angle of rotation minus the time integral of the rate S of rotation.
+
+        In the rotating axes, S = sqrt(Omega^2 + W^2) with the axial rate Omega and the transverse rate W.
+        """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation from the third axis to the vector that rests in space near the axis of rotation.
+        """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``.
 
-        In the rotating axes this vector rotates slowly, as the axis of rotation does.
+        The vector n is at rest in space and stays near the axis of rotation; the body rotates about it.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
@@ -124,7 +131,10 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, of rotation about the vector of :meth:`axes` in ``time`` s after Omega = start."""
+        """Return the angle, rad, by which the body rotates about the vector n of :meth:`axes` in ``time`` s.
+
+        The motion begins when the axial rate Omega equals ``start``.
+        """
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -138,6 +148,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body in ``time`` s after Omega = ``start``, all of it far from resonance."""
+        """Return the rotation of the body in ``time`` s, far from resonance, from the rate Omega = ``start`` on."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -35,7 +35,10 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 
 
 class Near:
-    r"""Attitudes of a driven body near resonance, \|x\| <= NEAR with x = Omega/sqrt(s), for one kappa = W/sqrt(s)."""
+    r"""Attitudes of a driven body near resonance, as a function of the scaled time x, for one value of kappa.
+
+    \|x\| is at most NEAR; :mod:`symrot.closed_form.spin_up.motion` explains x and kappa.
+    """
 
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)
@@ -51,7 +54,10 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the Taylor coefficients of the attitude at x = ``place``, whose denominator is a power of two."""
+        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``.
+
+        ``spinor`` is the attitude there; the denominator of ``place`` is a power of two.
+        """
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
@@ -76,7 +82,7 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at x as a quaternion in fixed-point integers, with an error of 1e-30."""
+        """Return the attitude at the scaled time x as a quaternion of fixed-point integers, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         sign = -1 if x < 0 else 1

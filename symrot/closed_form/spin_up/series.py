@@ -66,7 +66,10 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of the function a, lowest power of y first; ``share`` is kappa^2/radius2, v 1/radius2."""
+    """Return the coefficients of the function a (see the module's text) as a polynomial in y, lowest power first.
+
+    ``share`` is kappa^2/radius2 and ``v`` is 1/radius2.
+    """
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
     for _ in range(_ORDERS):
@@ -83,7 +86,10 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return the values of e at the Chebyshev points, from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
+    """Return the values of the function e (see the module's text) at the Chebyshev points.
+
+    ``h`` holds the coefficients of the function h in delta' = kappa^2 v^(5/2) h.
+    """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
         e = np.zeros(len(h) + 2)

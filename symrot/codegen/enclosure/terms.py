@@ -44,7 +44,7 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands from which coefficient 0 of a series is computed, without those of later coefficients."""
+    """Return the operands that determine coefficient 0 of a series; only later coefficients depend on the others."""
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 

@@ -1,6 +1,6 @@
-"""Sums of formulas with few negations: a minus sign is moved to where it costs no operation.
+"""Sums of formulas with few negations: a minus sign is moved into a number or a difference, where it costs nothing.
 
-The difference or number may also be a factor of a product.
+The number or difference may be a factor of a product: ``-((a - b)*c)`` becomes ``(b - a)*c``.
 """
 
 from collections.abc import Sequence

@@ -37,7 +37,7 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return the text in a form that neither ends a comment or docstring nor means anything to a compiler.
+    """Return a text that can be placed inside a comment or docstring: it neither ends it nor contains a trigraph.
 
     Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
     ``<U+00E9>``: the checker of certified C accepts only ASCII, and compilers warn about characters that reverse the
@@ -96,7 +96,7 @@ def banner(program: Program, description: Description, start: str, each: str, en
     program : Program
         The kernel.
     description : Description
-        The further texts: title, domain, derivation, command.
+        The texts that do not follow from the program: title, domain, derivation, command.
     start, each, end : str
         Comment marks of the language: the first line, the start of each line, and the last line.
     """

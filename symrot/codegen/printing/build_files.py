@@ -1,68 +1,188 @@
-"""Build files for C and C++ projects that use the library of kernels: a CMake target and a pkg-config file.
+"""Build files for C and C++ projects that use kernels: CMake targets chosen by name, and files of pkg-config.
 
 Each kernel is also a self-contained file that can be compiled alone: ``cc -c KERNEL.c``.
 """
+
+from symrot import __version__
 
 __all__ = ["FLAGS", "build_files"]
 
 FLAGS = ("-O3", "-fno-math-errno", "-fno-tree-slp-vectorize", "-ffp-contract=off")
 """Recommended flags: loops over samples are vectorised, operations are not fused, square roots do not set errno."""
 
+_CONFIG = """\
+# The kernels of this folder for CMake, each a static library of its own. Printed by symrot; do not edit.
+#
+#     find_package(symrot REQUIRED COMPONENTS euler_zyx_dcm heavy_top PATHS path/to/this/folder)
+#     target_link_libraries(firmware PRIVATE symrot::euler_zyx_dcm symrot::heavy_top)
+#
+# Only kernels that are linked are compiled, with the project's compiler and flags, and with those below. A component is
+# the name of a C file in this folder, in its folder scenes, or in a folder of the list SYMROT_FOLDERS. symrot::kernels
+# is all components together; without components, all kernels of this folder.
+# -DSYMROT_NATIVE=ON compiles for the processor at hand.
+if(CMAKE_VERSION VERSION_LESS 3.13)
+  set(symrot_FOUND FALSE)
+  set(symrot_NOT_FOUND_MESSAGE "symrot needs CMake 3.13 or later, got ${CMAKE_VERSION}")
+  return()
+endif()
+if(NOT CMAKE_C_COMPILER_LOADED)
+  enable_language(C)
+endif()
+option(SYMROT_NATIVE "compile the kernels of symrot for the processor of this machine" OFF)
+
+set(_symrot_folders ${SYMROT_FOLDERS} "${CMAKE_CURRENT_LIST_DIR}" "${CMAKE_CURRENT_LIST_DIR}/scenes")
+set(_symrot_kernels ${symrot_FIND_COMPONENTS})
+if(NOT _symrot_kernels)
+  file(GLOB _symrot_files RELATIVE "${CMAKE_CURRENT_LIST_DIR}" CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/*.c")
+  foreach(_symrot_file IN LISTS _symrot_files)
+    if(NOT _symrot_file MATCHES "_test[.]c$")
+      string(REGEX REPLACE "[.]c$" "" _symrot_kernel "${_symrot_file}")
+      list(APPEND _symrot_kernels "${_symrot_kernel}")
+    endif()
+  endforeach()
+endif()
+list(REMOVE_DUPLICATES _symrot_kernels)
+
+foreach(_symrot_kernel IN LISTS _symrot_kernels)
+  set(symrot_${_symrot_kernel}_FOUND TRUE)
+  if(TARGET symrot::${_symrot_kernel})
+    continue()
+  endif()
+  set(_symrot_folder "")
+  foreach(_symrot_place IN LISTS _symrot_folders)
+    if(NOT _symrot_folder AND EXISTS "${_symrot_place}/${_symrot_kernel}.c")
+      get_filename_component(_symrot_folder "${_symrot_place}" ABSOLUTE)
+    endif()
+  endforeach()
+  if(NOT _symrot_folder)
+    set(symrot_${_symrot_kernel}_FOUND FALSE)
+    if(symrot_FIND_REQUIRED_${_symrot_kernel})
+      set(symrot_FOUND FALSE)
+      set(symrot_NOT_FOUND_MESSAGE
+          "expected a kernel with a file ${_symrot_kernel}.c in ${_symrot_folders}; `symrot emit --list` lists kernels")
+    endif()
+    continue()
+  endif()
+  add_library(symrot_${_symrot_kernel} STATIC EXCLUDE_FROM_ALL "${_symrot_folder}/${_symrot_kernel}.c")
+  add_library(symrot::${_symrot_kernel} ALIAS symrot_${_symrot_kernel})
+  set_target_properties(symrot_${_symrot_kernel} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON
+                        POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(symrot_${_symrot_kernel} PUBLIC "${_symrot_folder}")
+  if(CMAKE_C_COMPILER_ID MATCHES "GNU")
+    target_compile_options(symrot_${_symrot_kernel} PRIVATE @GNU@)
+  elseif(CMAKE_C_COMPILER_ID MATCHES "Clang")
+    target_compile_options(symrot_${_symrot_kernel} PRIVATE @CLANG@)
+  endif()
+  if(SYMROT_NATIVE)
+    target_compile_options(symrot_${_symrot_kernel} PRIVATE -march=native)
+  endif()
+  if(UNIX)
+    target_link_libraries(symrot_${_symrot_kernel} PUBLIC m)
+  endif()
+endforeach()
+
+if(NOT TARGET symrot_kernels)
+  add_library(symrot_kernels INTERFACE)
+  add_library(symrot::kernels ALIAS symrot_kernels)
+endif()
+foreach(_symrot_kernel IN LISTS _symrot_kernels)
+  if(TARGET symrot_${_symrot_kernel})
+    target_link_libraries(symrot_kernels INTERFACE symrot_${_symrot_kernel})
+  endif()
+endforeach()
+"""
+
+_VERSION = """\
+# The version of symrot that printed the kernels of this folder. Printed by symrot; do not edit.
+set(PACKAGE_VERSION "@VERSION@")
+if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)
+  set(PACKAGE_VERSION_COMPATIBLE FALSE)
+elseif(PACKAGE_FIND_VERSION_MAJOR STREQUAL "@MAJOR@" AND PACKAGE_FIND_VERSION_MINOR STREQUAL "@MINOR@")
+  set(PACKAGE_VERSION_COMPATIBLE TRUE)
+  if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
+    set(PACKAGE_VERSION_EXACT TRUE)
+  endif()
+endif()
+"""
+
 _CMAKE = """\
-# Kernels of symrot as a static library. Printed by `symrot emit --all`; do not edit.
+# Kernels of symrot as a static library, and their installation. Printed by symrot; do not edit.
 #
-#     add_subdirectory(path/to/generated/c symrot)
-#     target_link_libraries(firmware PRIVATE symrot::kernels)
+#     add_subdirectory(path/to/this/folder symrot)
+#     target_link_libraries(firmware PRIVATE symrot::heavy_top)
 #
-# Only the kernels that a program calls are linked. -DSYMROT_NATIVE=ON compiles for the processor at hand.
+# Inside another project, only kernels that are linked are compiled. On its own, the folder makes one library:
+# -DSYMROT_KERNELS="euler_zyx_dcm;heavy_top" builds and installs these kernels alone; by default, all of this folder.
+# After the installation, find_package(symrot COMPONENTS ..) and `pkg-config --libs symrot-heavy_top` know them by name.
 cmake_minimum_required(VERSION 3.13)
-project(symrot_kernels LANGUAGES C)
+project(symrot_kernels VERSION @VERSION@ LANGUAGES C)
 
-option(SYMROT_NATIVE "compile kernels for the processor of this machine" OFF)
+set(SYMROT_KERNELS "" CACHE STRING "names of the kernels to build and to install; empty: all")
+find_package(symrot REQUIRED COMPONENTS ${SYMROT_KERNELS} PATHS "${CMAKE_CURRENT_SOURCE_DIR}" NO_DEFAULT_PATH)
 
-file(GLOB SYMROT_KERNELS CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.c")
-add_library(symrot_kernels STATIC ${SYMROT_KERNELS})
-add_library(symrot::kernels ALIAS symrot_kernels)
-set_target_properties(symrot_kernels PROPERTIES OUTPUT_NAME symrot C_STANDARD 99 C_STANDARD_REQUIRED ON
-                      POSITION_INDEPENDENT_CODE ON)
-target_include_directories(symrot_kernels PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>"
-                           "$<INSTALL_INTERFACE:include/symrot>")
-if(CMAKE_C_COMPILER_ID MATCHES "GNU")
-  target_compile_options(symrot_kernels PRIVATE @GNU@)
-elseif(CMAKE_C_COMPILER_ID MATCHES "Clang")
-  target_compile_options(symrot_kernels PRIVATE @CLANG@)
+if(NOT CMAKE_CURRENT_SOURCE_DIR STREQUAL CMAKE_SOURCE_DIR)
+  return()
 endif()
-if(SYMROT_NATIVE)
-  target_compile_options(symrot_kernels PRIVATE -march=native)
+
+foreach(kernel IN LISTS _symrot_kernels)
+  get_target_property(source symrot_${kernel} SOURCES)
+  get_filename_component(folder "${source}" DIRECTORY)
+  list(APPEND symrot_sources "${source}" "${folder}/${kernel}.h")
+  list(APPEND symrot_files "${source}")
+  if(EXISTS "${folder}/${kernel}_parameters.h")
+    list(APPEND symrot_sources "${folder}/${kernel}_parameters.h")
+  endif()
+endforeach()
+if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/symrot_math.h")
+  list(APPEND symrot_sources "${CMAKE_CURRENT_SOURCE_DIR}/symrot_math.h")
 endif()
-if(UNIX)
-  target_link_libraries(symrot_kernels PUBLIC m)
+add_library(symrot STATIC ${symrot_files})
+list(GET _symrot_kernels 0 first)
+get_target_property(options symrot_${first} COMPILE_OPTIONS)
+set_target_properties(symrot PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON POSITION_INDEPENDENT_CODE ON)
+target_include_directories(symrot PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
+if(options)
+  target_compile_options(symrot PRIVATE ${options})
 endif()
 
 set(prefix "${CMAKE_INSTALL_PREFIX}")
 configure_file(symrot.pc.in symrot.pc @ONLY)
-file(GLOB SYMROT_HEADERS CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.h")
-install(TARGETS symrot_kernels ARCHIVE DESTINATION lib)
-install(FILES ${SYMROT_HEADERS} DESTINATION include/symrot)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/symrot.pc" DESTINATION lib/pkgconfig)
+foreach(kernel IN LISTS _symrot_kernels)
+  file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" "Name: symrot-${kernel}
+Description: The kernel ${kernel} of symrot
+Version: @VERSION@
+Requires: symrot
+")
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" DESTINATION lib/pkgconfig)
+endforeach()
+install(TARGETS symrot ARCHIVE DESTINATION lib)
+install(FILES ${symrot_sources} symrotConfig.cmake symrotConfigVersion.cmake DESTINATION share/symrot)
 """
 
 _PKG_CONFIG = """\
-# Printed by `symrot emit --all`; do not edit. CMake puts in the prefix; by hand: sed 's|@prefix@|/usr/local|'
+# Printed by symrot; do not edit. CMake puts in the prefix; by hand: sed 's|@prefix@|/usr/local|'
 prefix=@prefix@
-includedir=${prefix}/include/symrot
+includedir=${prefix}/share/symrot
 libdir=${prefix}/lib
 
 Name: symrot
 Description: Kernels of rigid-body rotation, emitted by symrot
-Version: 1
+Version: @VERSION@
 Cflags: -I${includedir}
 Libs: -L${libdir} -lsymrot -lm
 """
 
 
 def build_files() -> dict[str, str]:
-    """Return the texts of the build files for the folder of C kernels, by file name."""
+    """Return the texts of the build files for a folder of C kernels, by file name."""
     clang = " ".join(flag for flag in FLAGS if "tree" not in flag)
-    cmake = _CMAKE.replace("@GNU@", " ".join(FLAGS)).replace("@CLANG@", clang)
-    return {"CMakeLists.txt": cmake, "symrot.pc.in": _PKG_CONFIG}
+    major, minor, *_ = __version__.split(".")
+    texts = {
+        "CMakeLists.txt": _CMAKE, "symrotConfig.cmake": _CONFIG, "symrotConfigVersion.cmake": _VERSION,
+        "symrot.pc.in": _PKG_CONFIG,
+    }  # fmt: skip
+    values = {"GNU": " ".join(FLAGS), "CLANG": clang, "VERSION": __version__, "MAJOR": major, "MINOR": minor}
+    for word, value in values.items():
+        texts = {name: text.replace(f"@{word}@", value) for name, text in texts.items()}
+    return texts

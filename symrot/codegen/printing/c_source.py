@@ -102,7 +102,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return the head of a C function; if it is too long for one line, its arguments stand on further lines."""
+    """Return the head of a C function; if it is too long for one line, its arguments fill several lines."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -144,9 +144,9 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    In this order few values have to be kept at the same time. ``index_of`` returns the C index of a component in its
-    array. With ``late``, all results are computed in another order, and the first one is stored after the last one is
-    computed.
+    This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C
+    index of a component in its array. With ``late``, results are computed in the order of :func:`_computed_in_turn`,
+    and stored after all of them are computed.
     """
     results = dict(program.outputs)
     lines: list[str] = []

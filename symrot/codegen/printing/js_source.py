@@ -3,11 +3,11 @@
 The statements are those of the C text, in the same order, so that both compute the same operations.
 """
 
-from dataclasses import replace
 from fractions import Fraction
 
 from symrot.codegen.printing.banner import Description, banner
 from symrot.codegen.printing.kernel_functions import called, own_function
+from symrot.codegen.printing.safe_names import with_safe_names
 from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
@@ -75,7 +75,7 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
     qualifier : str
         Text in front of the definition, such as ``"export "``.
     """
-    program = _with_safe_names(program)
+    program = with_safe_names(program, RESERVED)
     arguments = [a for a in program.signature.arguments if a.size]
     used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
     results = dict(program.outputs)
@@ -89,30 +89,6 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
         for i, (name, *_) in enumerate(a.components)
     ]
     return [*lines, "}"]
-
-
-def _with_safe_names(program: Program) -> Program:
-    """Return the program with other names for variables whose names are words of JavaScript.
-
-    The constants of a scene may have any name.
-    """
-    inputs = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
-    variables = [*inputs, *(name for name, _ in program.temporaries)]
-    safe: dict[str, str] = {}
-    for name in variables:
-        if name in RESERVED:
-            safe[name] = next(each for each in (name + "_" * k for k in range(1, 99)) if each not in variables)
-    if not safe:
-        return program
-    arguments = tuple(
-        replace(a, components=tuple((safe.get(c[0], c[0]) if a.role == "in" else c[0], *c[1:]) for c in a.components))
-        for a in program.signature.arguments
-    )
-    return Program(
-        replace(program.signature, arguments=arguments),
-        tuple((safe.get(name, name), rename(node, safe)) for name, node in program.temporaries),
-        tuple((name, rename(node, safe)) for name, node in program.outputs),
-    )
 
 
 def js_functions(*programs: Program) -> list[str]:

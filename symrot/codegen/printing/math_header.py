@@ -53,9 +53,9 @@ def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients of the polynomial p(t) for which t p(t) is nearest to t times a series.
+    """Return the ``count`` coefficients of the polynomial that is nearest to a power series for 0 <= t <= ``largest``.
 
-    The range is 0 <= t <= ``largest``; p has ``count`` coefficients.
+    Nearest means: the error, multiplied by t, is about as small as possible.
     """
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]

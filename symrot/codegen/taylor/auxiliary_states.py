@@ -62,7 +62,7 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 class _Closure:
-    """A system together with the auxiliary states that its rates and the rates of these states need."""
+    """A Taylor system together with the auxiliary states that occur in its rates, or in the rates of these states."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -231,7 +231,10 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace the polynomials of the attitude in a series and its operands, in ``self.replaced``."""
+        """Search a series and its operands for polynomials of the attitude; store their replacements.
+
+        ``self.replaced`` maps a series to the terms with auxiliary states that replace it.
+        """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return

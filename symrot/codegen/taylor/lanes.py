@@ -232,7 +232,10 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the pack of up to four pairs (sign, series); an unused lane (None) gets one that needs no time."""
+        """Return a pack (vector of four series) of up to four pairs (sign, series).
+
+        A lane without a pair (None) gets a series with which the pack costs no extra time.
+        """
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -250,7 +253,7 @@ class _Placer:
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
         """Add a column, the convolutions of up to four pairs of series, and return its index.
 
-        In a lane without a pair, the column is zero if the value is needed, otherwise a product that costs no time.
+        In a lane without a pair, the column is zero if the lane is ``needed``, and otherwise has any value.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -327,9 +330,10 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield the indices of columns that together contain all products of each lane.
+        """Yield the indices of columns that contain all products of each lane; each column has one product per lane.
 
-        While all lanes have a factor in common, products with this factor form a column, in which it is broadcast.
+        While all lanes have products with a common factor, these products form a column, in which the factor is
+        broadcast.
         """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]

@@ -38,5 +38,5 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return cosines and sines of angles whose sum is a multiple of an inverse trigonometric function."""
+    """Return cosines and sines of angles whose sum is ``coefficient * atom``, such as ``3/2 * asin(u)``."""
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

@@ -14,9 +14,7 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
     """Return the divisors of formulas, each as (divisor as written, factor that must not be zero).
 
-    The ``granted`` factors are left out.
-
-    A factor that is a root is replaced by its radicand.
+    Factors whose numbers are in ``granted`` are left out. A factor that is a root is replaced by its radicand.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []

@@ -40,7 +40,7 @@ class Product:
 
 
 def logarithms_in(expressions: Iterable[Expr]) -> list[Expr]:
-    """Return the outermost logarithms in expressions, also those by which inverse hyperbolic functions are read."""
+    """Return the outermost logarithms in expressions, also the logarithms that replace inverse hyperbolic functions."""
     stack, seen, logarithms = list(expressions), set(), []
     while stack:
         node = stack.pop()

@@ -26,7 +26,7 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
     """Split a fraction above/below into P and squares of nonnegative factors; return (P, factors, loose).
 
-    ``above/below`` is P times the product of all factor^(2 n). The result is loose if a factor f may be zero where P is
+    ``above/below`` is P times the product of all factor^(2 n). ``loose`` is true if a factor f may be zero where P is
     negative; there ``sqrt(P f^2)`` is real but ``sqrt(P)`` is not.
     """
     whole = above.ring.clone(domain=ZZ)

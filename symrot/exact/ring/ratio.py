@@ -1,8 +1,9 @@
 """Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
-stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. With each
-factor its first divisor is stored as it was written: the formula is defined only where that divisor is not zero.
+stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. Each factor
+is stored with the first divisor that contains it, as the formula writes this divisor: the formula is defined only where
+the divisor is not zero.
 """
 
 from collections.abc import Callable, Sequence

@@ -254,7 +254,11 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return N if constant angles need the number 2 cos(pi/N), or 0 if all are multiples of pi/24."""
+        """Return the N for which sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0.
+
+        The result is 0 if N would be too large, or if all constant angles are multiples of pi/24, whose sines and
+        cosines are square roots. If it is not 0, the base angle of constant angles is removed from ``bases``.
+        """
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         return cyclotomic.order(self.bases.pop(pi).denominator)
@@ -433,14 +437,17 @@ class FormulaRing:
                 pairs.append(self._fine_constant(coefficient))
                 continue
             multiple = int(coefficient / self.bases[atom])
-            if abs(multiple) > MOST_MULTIPLES // (1 + 7 * (atom is pi)):
-                raise TooLarge(f"expected angles up to {MOST_MULTIPLES} times another angle, got {argument}")
+            most = MOST_MULTIPLES // (1 + 7 * (atom is pi))
+            if abs(multiple) > most:
+                raise TooLarge(f"expected an angle of at most {most} times {self.bases[atom] * atom}, got {argument}")
             first, second = chebyshev(abs(multiple))
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
             if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
-                raise TooLarge(f"the sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms when expanded")
+                raise TooLarge(
+                    f"the expanded sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms; split the formula"
+                )
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
         turned = Ratio(cosine), Ratio(sine)
         for pair in pairs:

@@ -95,12 +95,12 @@ def _displayed(text: str) -> str:
 
 
 def _inline_display(latex: str) -> str:
-    """Return the MathML of a displayed formula, in a form that is allowed inside a paragraph."""
+    """Return MathML that displays a formula on a line of its own and is allowed inside a paragraph."""
     return display(latex).replace("<div ", "<span ").replace("</div>", "</span>")
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return the data for the script of the page, which grades numbers: answers, usual mistakes and units."""
+    """Return the data with which the script of the page grades numbers: answers, usual mistakes and units."""
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,

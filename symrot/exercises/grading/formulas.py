@@ -1,4 +1,4 @@
-"""The grading of a formula: the checker decides whether it equals the answer, and names the error if it does not."""
+"""Grading of formulas: the checker decides whether a formula equals the right answer, and otherwise names the error."""
 
 import re
 from collections.abc import Collection, Iterator
@@ -50,7 +50,7 @@ _JOINED = re.compile(r"(?P<divided>/\s*)?(?P<name>[^\W\d]\w*)(?P<power>(?:\^|\*\
 
 
 def mark_formula(key: str, answer: str, question: Question) -> Mark:
-    """Return the mark of an answer that is a formula.
+    """Grade an answer that is a formula, and return its mark.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
 
 
 def _plain(text: str) -> str:
-    """Return a typed formula with Greek letters spelled out, rates written as ``dphi``, and ``arccos`` as ``acos``."""
+    """Return a typed formula in the checker's language: Greek letters spelled out, ``dphi`` for rates, ``acos``."""
     text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
     for letter, name in GREEK.items():
         text = text.replace(f"{letter}\u0307", f" d{name}")
@@ -143,7 +143,7 @@ def _plain(text: str) -> str:
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:
-    """Return a known name unchanged, and several names written together as a product: ``m*g*l`` for ``mgl``."""
+    """Return a known name unchanged; write several names without a space as a product, ``mgl`` -> ``m*g*l``."""
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
     for single in (name, spelled, name.replace("_", "")):
@@ -164,7 +164,7 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
-    """Return the code of the student's error, such as ``"inverse"``: a key of the table of formula faults."""
+    """Return the code of the student's error, such as ``"inverse"``, a key of ``FORMULA_FAULTS``."""
     if "\\" not in own:
         if _holds(f"1/({own})", truth, question):
             return "inverse"
@@ -185,14 +185,15 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
 
 
 def _letters(formula: str, question: Question) -> set[str]:
-    """Return the names of the exercise's symbols that occur in a formula."""
+    """Return the names of symbols of the exercise that occur in a formula."""
     return {name for name in _NAME.findall(formula) if name in question.symbols}
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:
     """Return the checker's error code for a formula with wrong units.
 
-    The symbols get names without a conventional unit, so that the checker looks for other errors than wrong units.
+    The symbols are renamed to names without a conventional unit. So the checker cannot object to the units, and looks
+    for other errors.
     """
     letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
     plain = {letters[name]: "1" for name in question.symbols}
@@ -202,7 +203,10 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether a modified answer equals the right formula; False if it has no value, such as 1/0."""
+    """Return whether a modified formula of the student equals the right formula.
+
+    Return False if it has no value, such as 1/0.
+    """
     try:
         return _is_right(_verdict(own, truth, question, repair=False))
     except InputError:
@@ -210,7 +214,7 @@ def _holds(own: str, truth: str, question: Question) -> bool:
 
 
 def _exchanged(own: str, truth: str, question: Question) -> bool:
-    """Return whether the answer becomes right if two of its symbols are exchanged."""
+    """Return whether the student's formula becomes right if two of its symbols are exchanged."""
     names = sorted({name for name in _NAME.findall(own) + _NAME.findall(truth) if name in question.symbols})
     for place, first in enumerate(names):
         for second in names[place + 1 :]:

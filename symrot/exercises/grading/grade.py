@@ -1,4 +1,4 @@
-"""The function ``grade``, and the grading of answers in files for the command ``symrot grade``."""
+"""Grading of all answers to an exercise or a sheet: the function ``grade`` and the command ``symrot grade``."""
 
 import json
 import re
@@ -39,7 +39,7 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     Raises
     ------
     InputError
-        For answers to questions that there are not.
+        If there is an answer to a question that does not exist.
 
     Examples
     --------
@@ -83,12 +83,12 @@ def _mark(key: str, answer: Any, question: Question) -> Mark:
 
 
 def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
-    """Return the marks for a file of answers to the exercises in a JSON file.
+    """Grade a file of answers to the exercises in a JSON file, and return the marks.
 
     Parameters
     ----------
     exercises : str or Path
-        What ``symrot exercise --format json`` wrote.
+        A file that ``symrot exercise --format json`` wrote.
     answers : str or Path
         A JSON object ``{"1a": "m*L^2/3"}``, or a text with a line ``1a: m*L^2/3`` for each answer.
     """

@@ -40,7 +40,7 @@ _FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
 @dataclass(frozen=True)
 class _Number:
-    """A student's number in SI units, with its unit and its count of significant digits (None if exact, as 1/3)."""
+    """A number typed by a student: value in SI units, unit, and significant digits (None if it is exact, as 1/3)."""
 
     value: float
     unit: UnitProduct | None
@@ -55,7 +55,7 @@ class _Number:
 
 
 def mark_number(key: str, answer: str, question: Question) -> Mark:
-    """Return the mark of an answer that is a number.
+    """Grade an answer that is a number, and return its mark.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
 
 
 def _readings(answer: str) -> Iterator[_Number]:
-    """Yield the possible meanings of a typed number; a comma may be a decimal point or separate thousands."""
+    """Yield the possible readings of a typed number: a comma may be a decimal point, or may separate thousands."""
     text = answer.strip()
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
@@ -127,7 +127,7 @@ def _digits(text: str) -> int | None:
 
 
 def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
-    """Return the mark of one possible meaning of a typed number."""
+    """Return the mark for one reading of a typed number."""
     truth = float(question.decimal)
     own = unit_of(question.unit) if question.unit else None
     if number.unit is not None and number.unit.dimension != (own.dimension if own else {}):

@@ -1,4 +1,4 @@
-"""Messages about wrong answers and the credit for each kind of error: one table for numbers, one for formulas."""
+"""Tables of the messages about wrong answers, with the credit for each kind of error: for numbers and for formulas."""
 
 from fractions import Fraction
 
@@ -10,12 +10,15 @@ NUMBER_FAULTS: dict[str, tuple[Fraction, str]] = {
     "unit_forgotten": (Fraction(4, 5), "the number is right, but its unit is missing: write {unit}"),
     "coarse": (Fraction(1, 2), "the number is rounded too much: give at least three significant digits"),
     "sign": (Fraction(1, 2), "the size is right, but the sign is wrong: check the directions"),
-    "factor": (Fraction(1, 2), "it is {factor} times the answer: look for a factor that is missing or too many"),
+    "factor": (
+        Fraction(1, 2),
+        "the number is {factor} times the answer: look for a factor that is missing or too many",
+    ),
     "degrees": (Fraction(1, 2), "degrees and radians are mixed up: work in radians, and convert at the end"),
-    "power_of_ten": (Fraction(1, 2), "it is wrong by a power of ten: check how you converted the units"),
+    "power_of_ten": (Fraction(1, 2), "the number is wrong by a power of ten: check how you converted the units"),
     "inverse": (Fraction(1, 4), "this is the reciprocal of the answer"),
     "slip": (Fraction(1, 2), "{slip}"),
-    "turns": (Fraction(1, 2), "turns and radians are mixed up: one turn is 2 pi rad"),
+    "turns": (Fraction(1, 2), "revolutions and radians are mixed up: one revolution is 2 pi rad"),
     "dimension": (Fraction(0), "the unit is {own}, but the answer has the unit {unit}"),
     "other": (Fraction(0), "the number is wrong"),
 }
@@ -36,15 +39,15 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "overall_sign": (HALF, "the whole formula has the wrong sign: check the directions"),
     "factor": (HALF, "a factor is wrong, missing or too many"),
     "exponent": (HALF, "a power is wrong: look for a square that is missing"),
-    "half_angle": (HALF, "an angle stands where its half belongs"),
-    "double_half_angle": (HALF, "half of an angle stands where the angle belongs"),
+    "half_angle": (HALF, "an angle is used where half the angle is needed"),
+    "double_half_angle": (HALF, "half an angle is used where the whole angle is needed"),
     "sin_cos_swap": (HALF, "sine and cosine are exchanged"),
     "lost_brackets": (HALF, "brackets are missing"),
-    "wrong_symbol": (HALF, "one letter stands where another belongs"),
+    "wrong_symbol": (HALF, "one letter is used in place of another"),
     "missing_term": (HALF, "a term is missing"),
     "extra_term": (HALF, "there is a term too many"),
-    "inertia_product_sign": (HALF, "the products of inertia have the other sign"),
-    "active_passive_transpose": (HALF, "the rotation is used the wrong way round"),
+    "inertia_product_sign": (HALF, "the products of inertia have the wrong sign"),
+    "active_passive_transpose": (HALF, "the rotation is applied in the wrong direction (the matrix is transposed)"),
     "frame_body_space": (HALF, "body components and space components are mixed up"),
     "quaternion_product_order": (HALF, "the factors of the quaternion product are in the wrong order"),
     "commutator_order": (HALF, "the factors of a matrix product are in the wrong order"),
@@ -52,8 +55,8 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "letter_missing": (QUARTER, "a letter of the answer is missing"),
     "inverse": (QUARTER, "this is the reciprocal of the answer"),
     "two_faults": (QUARTER, "two things are wrong"),
-    "requires_condition": (HALF, "this is right in a special case only"),
-    "unit": (NOTHING, "the units do not fit, so something is missing or too many"),
+    "requires_condition": (HALF, "this is right only in a special case"),
+    "unit": (NOTHING, "the units do not agree, so something is missing or too many"),
     "none": (NOTHING, "the formula is not equal to the answer"),
 }
 """Code of the checker's diagnosis -> credit and sentence; the codes without an entry have that of ``none``."""

@@ -121,7 +121,7 @@ def topic_of(name: str) -> str:
 
 
 def chosen(topic: str) -> tuple[str, ...]:
-    """Return template names: those of a topic, one template by its name, or all templates for an empty text.
+    """Return the names of templates: all templates of a topic, one template by its name, or all for an empty text.
 
     All templates are returned in turn: first the first template of each topic, then the second of each, and so on.
 

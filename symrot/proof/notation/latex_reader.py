@@ -135,7 +135,7 @@ class _Interpreter(Cursor):
             return self.raised(value, script.inside)
         power = self.value(script.inside)
         if isinstance(power, MatrixBase):
-            raise Unread("expected readable LaTeX, got the exponential of a matrix")
+            raise Unread("expected the exponential of a number, got the exponential of a matrix")
         return sympy.exp(power)
 
     def raised(self, value: Any, inside: Node) -> Any:
@@ -147,7 +147,7 @@ class _Interpreter(Cursor):
         if matrix and value.cols == 1 and exponent == 2:
             return value.dot(value)
         if isinstance(exponent, MatrixBase) or (matrix and not exponent.is_Integer):
-            raise Unread("expected readable LaTeX, got a power of a matrix")
+            raise Unread("expected a matrix to a whole power, or a power of a number, got another power of a matrix")
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
@@ -155,7 +155,7 @@ class _Interpreter(Cursor):
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
-            raise Unread("expected readable LaTeX, got an absolute value")
+            raise Unread("expected a vector between the bars of a length, got an absolute value or a determinant")
         script = self.script("^")
         if script is None:
             return sqrt(square)
@@ -194,7 +194,7 @@ class _Interpreter(Cursor):
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
-            raise self.fail("an index such as _{x = 0} after the bar, the place of the value")
+            raise self.fail("an index such as _{x = 0} after the bar, which says where the formula is evaluated")
         places: list[tuple[Any, Any]] = []
         inside = script.inside if isinstance(script.inside, Row) else Row((script.inside,), dot.start, dot.start)
         for equation in divided(inside, ","):
@@ -219,7 +219,10 @@ class _Interpreter(Cursor):
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
     def differentiated(self, operand: Row | None) -> Any:
-        """Return the formula to differentiate: the rest of the numerator of d/dt, or the term after the fraction."""
+        r"""Return the formula to differentiate: ``x`` in ``\frac{d x}{dt}`` as in ``\frac{d}{dt} x``.
+
+        The ``operand`` is the numerator after its d; if it is empty, the term after the fraction is differentiated.
+        """
         if operand is None:
             raise self.fail("d or \\partial in the numerator of a derivative")
         return self.value(operand) if operand.items else self.term()
@@ -321,7 +324,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return the rest of a group or token after the mark with which it starts; None if it starts otherwise."""
+    """Return the rest of a group or token after the mark at its start; None if it does not start with the mark."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 

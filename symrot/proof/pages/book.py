@@ -104,14 +104,14 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
 
 
 def _turning(before: Page | None, after: Page | None) -> str:
-    """Return links to the page before, the contents and the page after."""
+    """Return HTML links to the previous page, the table of contents and the next page of the book."""
     back = f'<a rel="prev" href="{before.name}.html">← {prose(before.title)}</a>' if before else "<span></span>"
     on = f'<a rel="next" href="{after.name}.html">{prose(after.title)} →</a>' if after else "<span></span>"
     return f'<nav class="book">{back}<a href="{CONTENTS}">Contents</a>{on}</nav>'
 
 
 def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
-    """Yield a paragraph with links to the pages that refer to a page, if there are any."""
+    """Yield a paragraph in HTML with links to the other ``pages`` that refer to ``page``, if there are any."""
     link = f"]({page.name}.md)"
     others = [other for other in pages if other is not page and any(link in text for _, _, text in _words(other))]
     if others:
@@ -120,7 +120,10 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 
 
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
-    """Yield the place of each text of a page (after ``#``), its title, and the text, as Markdown."""
+    """Yield (anchor, title, text) for each text on a page, for the search: ``#step-3``, or ``""`` for the page's top.
+
+    Titles and texts are Markdown.
+    """
     yield "", page.title, page.about
     for opening in page.opening:
         if isinstance(opening, Figure):

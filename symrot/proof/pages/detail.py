@@ -67,7 +67,7 @@ def _on_board(step: Step) -> list[Passage]:
 
 
 def _on_one_screen(passages: list[Passage]) -> list[Passage]:
-    """Return the first paragraphs, as many as fit on a screen, and a sentence that says what is left out."""
+    """Return the first paragraphs, as many as fit on a screen, and a sentence that says that the rest is left out."""
     screen: list[Passage] = []
     lines = letters = 0
     for passage in passages:
@@ -123,7 +123,10 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return equations "multiple of a hypothesis = 0" for what a rewriting subtracts; empty if they fit in the text."""
+    """Return an equation ``multiple of a hypothesis = 0`` for each multiple that one rewriting subtracts.
+
+    The result is empty if the multiples are short enough for the sentence that explains the rewriting.
+    """
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)
 
@@ -145,6 +148,6 @@ def _reason(link: Link) -> str:
         return f"with ${formula(link.rule[0])} = {formula(link.rule[1])}$:"
     if link.cofactors:
         terms = _terms(link)
-        return f"{link.reason} are taken away" + (f", {', '.join(f'${term}$' for term in terms)}:" if _short(terms) else
-                                                  ", each of which is zero:")  # fmt: skip
+        listed = f", {', '.join(f'${term}$' for term in terms)}" if _short(terms) else ""
+        return f"{link.reason} are subtracted{listed}:"
     return f"{link.reason}:"

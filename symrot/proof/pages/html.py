@@ -44,9 +44,9 @@ a { color: inherit; }
 
 
 def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
-    """Return a page as an HTML document, with HTML above and below it and further rules of its style.
+    """Return a page as an HTML document, with the HTML ``top`` above it, ``bottom`` below it, and more CSS (``style``).
 
-    It is self-contained unless ``font`` is the address of the mathematical font.
+    The document is self-contained unless ``font`` is the address of the file of the mathematical font.
     """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     for opening in page.opening:
@@ -95,7 +95,7 @@ def _passage(passage: Passage) -> list[str]:
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:
-    """Return a self-contained HTML document with a title, the parts of its body, and further rules of its style."""
+    """Return a self-contained HTML document with a title, the parts of its body, and more CSS (``style``)."""
     title = escape(re.sub(r"[$*`]", "", title))
     head = (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

@@ -59,7 +59,7 @@ def latex_document(page: Page) -> str:
 
 
 def _figure(figure: Figure) -> str:
-    """Return a figure in LaTeX, printed where its file was converted to PDF, with its caption in any case."""
+    """Return a figure in LaTeX: its caption, above it the picture if its PDF file exists when LaTeX runs."""
     path = figure.file.removesuffix(".svg")
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"

@@ -25,7 +25,7 @@ def characters() -> frozenset[str]:
 
 @cache
 def face(source: str = "") -> str:
-    """Return rules of CSS that show formulas in the font, from the address of its file, or embedded without one."""
+    """Return CSS rules that show formulas in the font; ``source`` is the address of its file, or empty to embed it."""
     address = source or f"data:font/woff2;base64,{b64encode(content()).decode('ascii')}"
     return (
         f'@font-face {{ font-family: "symrot math"; src: url("{address}") format("woff2"); }}\n'

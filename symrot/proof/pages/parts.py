@@ -23,10 +23,10 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps whose reason an earlier step of the page gives for the same claim.
+    """Return the numbers of the steps that repeat the claim and the reason of an earlier step of the page.
 
-    A page that proves one result for many sequences of angles, or many solids, argues once: :data:`MANY` steps have the
-    same reason and the same claim, but for formulas and names of sequences, and only the first prints the reason.
+    A page may prove one result for many sequences of angles, or many solids. If at least :data:`MANY` steps have the
+    same reason and the same claim, apart from formulas and names of sequences, only the first one prints the reason.
     """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
@@ -38,7 +38,7 @@ def repetitions(page: Page) -> frozenset[int]:
 def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
     """Yield the remarks on a step, each a sentence: its reason, its hypotheses, its conditions and its source.
 
-    A repetition has no reason.
+    The remarks on a repetition (see :func:`repetitions`) leave out the reason.
     """
     if not is_repetition:
         yield f"*Why:* {step.reason}."

@@ -1,4 +1,4 @@
-"""Proven limits of steps, in Python, for SciPy's steppers and as a reference for tests.
+"""Proven upper limits of the step length, computed in Python for SciPy's steppers and as a reference for tests.
 
 A step is limited so that it cannot pass over a feature of a torque formula: a short part, such as a pulse, that the
 points at which the stepper evaluates the formula may not show. An enclosure is a set of terms of the rates together
@@ -31,7 +31,7 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 
 
 class Disc(NamedTuple):
-    """Disc of all complex numbers within ``radius`` of a real ``centre``.
+    """The disc of all complex numbers within ``radius`` of a real ``centre``: it encloses the values of a formula.
 
     If given, ``log_size`` is an upper bound of the logarithm of their absolute values. It is useful where the numbers
     themselves overflow or underflow.
@@ -52,7 +52,7 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return the bound, or infinity if the bound is not a number, as for 0 times an infinite bound."""
+    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives."""
     return math.inf if math.isnan(bound) else bound
 
 
@@ -78,10 +78,10 @@ def _inverse(a: Disc) -> Disc:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return a disc that contains the square root of a disc.
+    """Return a disc that contains the square roots of all numbers in a disc.
 
     If the disc contains zero, the root has no Taylor series there. The radius is then the size of the root times
-    ``whole``, which is 1 divided by the missed share; see :file:`disc.h`.
+    ``whole``, which is 1 divided by the missed share (see the module's text).
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -167,11 +167,11 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return a compiled Python function of (t, reach, whole, y, radii, w, a) that computes the bounds of an enclosure.
+    """Generate and compile a Python function that computes the bounds of an enclosure much faster than disc by disc.
 
-    The arguments are those of :class:`Deviations` when it is called, the weights w and their absolute values a. The
-    function is much faster than the evaluation disc by disc and gives equal results. It omits the logarithms of sizes,
-    which matter only if a bound is infinite or not a number: the caller then evaluates disc by disc.
+    Its arguments are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then the weights of
+    the terms and their absolute values. The results are equal, but it omits the logarithms of sizes: if a bound is
+    infinite or NaN, the caller has to evaluate disc by disc.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -221,7 +221,7 @@ class Deviations:
     Parameters
     ----------
     enclosure : Enclosure
-        The terms of the rates that need bounds.
+        The terms of the rates that need bounds, with the rules by which they are evaluated over discs.
     parameters : mapping of str to number
         Values of the parameters of the rates, by name.
     bounds : function, optional
@@ -247,10 +247,10 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return one bound per rate, for times within ``reach`` of t and states within ``radii`` of y.
+        """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
 
-        A bound is infinite if a pole may lie in the discs. ``whole`` is 1 divided by the missed share; square roots
-        near zero need it.
+        A bound is infinite if a pole may lie in these discs. Square roots near zero need ``whole``, which is 1 divided
+        by the missed share, see the module's text.
         """
         self.spent += 1
         try:
@@ -262,9 +262,9 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as a call, evaluated disc by disc.
+        """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed by :class:`Disc`.
 
-        Logarithms of sizes are used, so that fewer bounds are infinite.
+        These also contain logarithms of sizes, so that fewer bounds are infinite.
         """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
@@ -303,7 +303,10 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function from parameters to :class:`Deviations`; the Python code of the bounds is compiled only once."""
+    """Return a function that takes the parameters of the rates and returns their :class:`Deviations`.
+
+    The Python code of the bounds is compiled only once for all parameters.
+    """
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
 
@@ -318,7 +321,7 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the length of the longest step, at most h, whose error is proven to be at most the allowed one.
+    """Return the length of the longest step, at most h, that is proven not to miss more of a torque than is allowed.
 
     The method is that of :file:`enclosure.h`.
 

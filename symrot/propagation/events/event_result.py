@@ -78,7 +78,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """The motion at times after its start, or before it: its polynomials, and a function from times to states."""
+    """One of the two parts of a motion, after or before its start: polynomials, and a function from times to states."""
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -166,7 +166,10 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events between the start and ``end``, and the error that ended the search earlier, or None."""
+    """Search one side of a motion for events, up to ``end``; return them, and the error that ended the search early.
+
+    The error is None if the search reached ``end`` or a terminal event.
+    """
     if end == start:
         return SearchResult([], None, []), None
     try:
@@ -182,7 +185,10 @@ def _searched(
 
 
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
-    """Yield a sentence for each event whose formula has an extremum that differs from zero by less than its error."""
+    """Yield a warning for each event whose formula comes so close to zero that the error of the motion matters.
+
+    Each doubt is (index of the event, time of the extremum of its formula, s).
+    """
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
         if times:
@@ -196,7 +202,7 @@ def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> I
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Return one list of the zeros before and after the start t0 of a motion.
+    """Join the zeros of event formulas before the start t0 of a motion and those after it to one list.
 
     A zero at the start itself is listed once. It is of kind ``"touching"`` if the formula has the same sign before and
     after the start.
@@ -212,7 +218,10 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
+    """Return the side of a motion from its start to ``end``, s, as polynomials and as a function from times to states.
+
+    By these polynomials the search for events evaluates the motion, whatever its method.
+    """
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
@@ -260,7 +269,7 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the pieces of a motion, with states set to zero where they are only rounding errors of earlier values.
+    """Yield the pieces of a motion, with states set to zero where only rounding errors are left of them.
 
     An example is the angular velocity of a body after friction has stopped it.
     """

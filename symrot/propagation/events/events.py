@@ -103,9 +103,9 @@ class ZerosNotSeparated(PropagationError):
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
-        """Return the same error with ``epoch``, s, added to its time.
+        """Return the error with its time converted from the clock of the motion to time of the scene.
 
-        The result is the time of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        The clock shows 0 at the scene time ``epoch``, s.
         """
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros
@@ -179,7 +179,7 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether at least one event depends on time, directly or through the quantities in its formula."""
+    """Return whether the formula of at least one event contains time, directly or in one of its quantities."""
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -258,9 +258,9 @@ class _Search:
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
         """Return the intervals of a piece that may contain zeros: lists [event, start, end, sign before, sign after].
 
-        Times are in s; a sign of 0 is not known. Extrema whose distance from zero is less than the error of the motion
-        are added to ``doubts``. If the search takes more operations than the limit, which grows with the number of
-        rows, it ends early and the second result is an error; otherwise it is None.
+        Times are in s; the signs of the event's formula are 0 where they are not known. If an extremum of the formula
+        differs from zero by less than the error of the motion, it is added to ``doubts``. If the search takes more
+        operations than the limit, it ends early and the second result is an error; otherwise it is None.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -290,7 +290,7 @@ class _Search:
         return [entry[:5] for entry in listed if not entry[5]], None
 
     def terms(self, rows: Floats) -> int:
-        """Return the number of coefficients of each polynomial in ``rows``."""
+        """Return the number of coefficients of each polynomial in ``rows``, which is its degree plus 1."""
         count: int = (rows.shape[1] - HEAD) // self.library.states
         return count
 
@@ -378,7 +378,10 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the doubts (event, time) that do not lie at a located zero, once each, in the order of the motion."""
+    """Return the doubts that remain after the search, in the order of the motion: (event, time), each only once.
+
+    A doubt is an extremum so close to zero that the error of the motion matters. It is removed if it lies at a zero.
+    """
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         insort(settled.setdefault(zero.event, []), zero.t)
@@ -395,7 +398,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return two lists: the signs of the formulas just after the start of a piece, and their signs at its end.
+    """Return two lists: the signs of the formulas just after the start of a piece of the motion, and at its end.
 
     A sign is 0 if the value is smaller than its rounding error.
     """
@@ -407,10 +410,10 @@ def signs_at_ends(
 
 
 def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
-    """Return the sign of a formula just after the start of a piece.
+    """Return the sign of a formula just after the start of a piece of the motion.
 
-    It is the sign at the smallest distance from the start at which the value exceeds its rounding error and has the
-    same sign at twice the distance.
+    At the start itself the value may be zero. The sign is therefore taken a little later, at increasing distances,
+    until it exceeds the rounding error and stays the same at twice the distance.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
@@ -425,9 +428,10 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Return two lists of intervals that may contain zeros: those that end before the time ``last``, and the others.
+    """Join adjacent intervals of the same event that may contain zeros, and split the list at the end of a piece.
 
-    Adjacent intervals of the same event are joined.
+    Return the intervals whose zeros can be located now, and the intervals that reach the time ``last`` and may continue
+    in the next piece of the motion.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -450,7 +454,10 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the sign of an event's formula just before the end of a piece; 0 if rounding errors exceed all values."""
+    """Return the sign of an event's formula just before the end of a piece of the motion.
+
+    The sign is 0 if all values are smaller than their rounding errors.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
@@ -465,16 +472,16 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Append the zeros in the given intervals to ``zeros``, and return the time of a terminal event, s, or None.
+    """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None.
 
-    An interval contains no zero that counts as an event if the formula is zero throughout, or up to the end of the
-    piece.
+    No event is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
+    ``left`` counts, for each event, how many zeros remain until it ends the motion.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign of a formula near t, in the direction ``step``; 0 if rounding errors exceed all values."""
+        """Return the sign of a formula just beside t, in the direction ``step``; 0 if rounding errors are larger."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -513,7 +520,7 @@ def _settled(
 def stepped(
     integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Yield the polynomials of an integration from its start to ``end``, s, piece by piece as the stepper proceeds.
+    """Integrate a motion from its start to ``end``, s, and yield its polynomials, piece by piece.
 
     The recorded steps are appended to ``records``. If an error ends the motion early, it is appended to ``broken``.
     """

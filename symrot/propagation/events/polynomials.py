@@ -44,7 +44,7 @@ class Piece(NamedTuple):
 
 
 def rows_of(stepper: Any, record: Floats) -> Floats:
-    """Return the recorded steps of a stepper (Taylor or DOP853) as rows of polynomial coefficients."""
+    """Convert the recorded steps of a stepper (Taylor or DOP853) to rows of polynomial coefficients, one per step."""
     if stepper.name == "taylor":
         return record
     count = len(record)
@@ -60,7 +60,8 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 def _nested(terms: int) -> Floats:
     """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s.
 
-    Dense output is a weighted sum of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s.
+    Dense output gives the states inside a step as a weighted sum of s, s r, s^2 r, s^2 r^2, ..; here s is the fraction
+    of the step and r = 1 - s.
     """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
@@ -77,7 +78,8 @@ def _nested(terms: int) -> Floats:
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
     """Return the Chebyshev points on [-1, 1] and two conversion matrices.
 
-    The first matrix converts values at the points to Chebyshev coefficients, the second one these to powers.
+    The first matrix converts values at the points to coefficients of Chebyshev polynomials; the second one converts
+    these to coefficients of powers.
     """
     from numpy.polynomial import chebyshev
 
@@ -190,7 +192,7 @@ def fitted_pieces(
 ) -> Generator[Piece, None, None]:
     """Yield long pieces of polynomials that agree with a motion in closed form, which has no steps; see :func:`fitted`.
 
-    ``longest``, s, is a first guess of the interval of time that one polynomial can fit.
+    ``longest``, s, is a first guess of the length of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

@@ -51,12 +51,13 @@ Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 
 WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
-"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs a few per
-cent of the time. Phase errors are alike in all windows and add up: with 8192 steps they were five times as large."""
+"""Number of steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs
+a few per cent of the time. The phase errors between two moves are alike and add up: with 8192 steps they were five
+times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one step, and the fraction of the span that a step must cover to use all of it.
+    """Return the error allowed in one step, and the fraction of the span from which on a step may use all of it.
 
     A shorter step may use a proportional share of the error. Steps are about ``tolerance^(1/8)`` times as long as the
     time in which the motion changes noticeably (its natural time). With the fraction chosen here, the allowed error
@@ -176,7 +177,7 @@ class _Clocked(Integration):
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
         """Return the C function that continues a run, its parameters, and the largest number of steps per call.
 
-        If the run has gone far from the epoch, the epoch is first moved to the present time.
+        If the present time is far from the epoch, from which the kernel counts time, the epoch is moved to it first.
         """
         tried = self.stepper.tried(run)
         window = run.window

@@ -48,7 +48,7 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion, of which SciPy follows a part: its two ends, s, and the evaluations spent before the part."""
+    """The whole motion of which SciPy computes only a part: its two ends, s, and the evaluations before that part."""
 
     start: float
     end: float
@@ -192,14 +192,14 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion by SciPy as a function of time, see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy, computable at any time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end, as a list of arrays.
+        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end.
 
         There is one array for each segment between switching times.
         """
@@ -216,7 +216,7 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Write the states at the ``times`` inside each piece into ``states``, from the solution of the piece."""
+    """Write the states at ``times`` into ``states``; each is computed by the piece in which its time lies."""
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -224,7 +224,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, computed in time since ``epoch`` and called with times that are not shifted."""
+    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -268,7 +268,7 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Number of evaluations of the rates and of their bounds so far; both take about as long. It is limited."""
+        """Number of evaluations so far, of the rates and of their bounds, which take about as long; it is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -294,8 +294,8 @@ class _Integration:
     def solutions(self, end: float) -> list[Piece]:
         """Return the motion from t0 to ``end`` as pieces (first time, last time, solution), one for each segment.
 
-        If the coarse pass stops early, the final pass follows the motion up to the same time, so that no sample is
-        lost, and then the error of the coarse pass is raised.
+        A coarse pass over the motion determines the sizes of the states, for the error control of the final pass. If
+        it stops early, the final pass still computes the motion up to that time before the error is raised.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
@@ -343,9 +343,9 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Append SciPy's solution over a segment, as far as SciPy can follow the motion, to ``pieces``.
+        """Let SciPy integrate over a segment, as far as it can follow the motion; append the solution to ``pieces``.
 
-        No step is longer than the bounds of the rates allow.
+        The bounds of the rates limit its steps, so that no step passes over a short pulse.
         """
         import scipy.integrate
 
@@ -431,9 +431,9 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch to about the present time; return the exact time since the new epoch.
+        """Move the epoch, from which time is counted, to the present time, which is ``now`` s after the old epoch.
 
-        ``now`` is the time since the old epoch.
+        Return the present time since the new epoch: the rounding error of the new epoch.
         """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)

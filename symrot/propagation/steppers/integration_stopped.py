@@ -28,13 +28,13 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return class and arguments, so that the error passes from one process to another; without samples."""
+        """Return class and arguments for pickle, by which processes pass the error on; its samples are left out."""
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the same error with ``epoch``, s, added to its times.
+        """Return the error with its times converted from the clock of the motion to times of the scene.
 
-        The results are times of the scene, if the clock of the motion shows 0 at the scene time ``epoch``.
+        The clock shows 0 at the scene time ``epoch``, s.
         """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
@@ -72,12 +72,12 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return the reason why steps shrank to zero at t: ``reason``, or that adjacent doubles lie too far apart."""
+    """Return why a stepper is stuck at the time t: adjacent doubles near t lie too far apart, or else ``reason``."""
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
     advice = "choose t = 0 nearer to the motion"
-    return f"the time is too coarse for its steps: adjacent doubles lie {apart:.3g} s apart there; {advice}"
+    return f"the next steps are too short for doubles, which lie {apart:.3g} s apart at this time; {advice}"
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:

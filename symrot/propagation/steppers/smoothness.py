@@ -36,5 +36,5 @@ def _of_torque(torque: TorqueStructure) -> str:
 
 
 def non_smooth_torque(plan: Plan) -> str:
-    """Return a sentence that names a non-smooth torque of a plan, or an empty text if all torques are smooth."""
+    """Return a sentence that says which torque of a plan is not smooth; an empty text if all torques are smooth."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

@@ -114,7 +114,7 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion from its cost (accepted steps, rejected steps, evaluations) and switchings."""
+    """Return the statistics of a motion; ``cost`` holds its accepted steps, rejected steps and evaluations."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
@@ -181,7 +181,10 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside the end ``edge`` of a segment, too near to affect the choice of the first step."""
+    """Return a time just inside a segment, beside its end ``edge``: there a torque that jumps has its value inside.
+
+    ``other`` is the other end. The distance is too small to affect the choice of the first step.
+    """
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
@@ -232,7 +235,7 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A motion as a function from times to states, composed of the recorded steps of a stepper in C."""
+    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())
@@ -248,10 +251,7 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """C function and parameters with which a run continues until the epoch of its kernel is moved again.
-
-    The epoch is the time from which the kernel counts time.
-    """
+    """C function and parameters of a run, valid until the epoch, from which the kernel counts time, is moved again."""
 
     step: Callable[..., Any]
     parameters: Any
@@ -329,7 +329,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the C function ``symrot_NAME`` plus an ending, such as ``_dense``, with its types declared."""
+        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with declared types."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -345,11 +345,14 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the part of the span that a step must cover to use all of it."""
+        """Return the error allowed in one step, and the part of the span from which on a step may use all of it.
+
+        A shorter step may use only a share of the error.
+        """
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Set the fields of a run that only this method uses, before the next segment is integrated."""
+        """Prepare a run for the next segment: set the fields of its C struct that only this stepper's method uses."""
 
     @staticmethod
     @abstractmethod
@@ -486,9 +489,10 @@ class Integration:
         return states, self.stats()
 
     def sample_sorted(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the result of ``restarted().sample(times)``, faster if the times never decrease from t0 on.
+        """Return the states at sample times and the cost, like ``restarted().sample(times)``.
 
-        ``in_order`` promises that the times are finite and never decrease.
+        This method is faster if no time lies before t0 and the times never decrease. ``in_order`` promises that the
+        times are finite and never decrease.
         """
         if self.breaks or not in_order or not len(times) or times.item(0) < self.t0:
             return self.restarted().sample(times)
@@ -509,7 +513,7 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """State of the motion in C at its start; each new run is a copy."""
+        """The C struct of the motion at its start; each new run begins with a copy of it."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
@@ -545,7 +549,7 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the numbers of accepted steps, rejected steps and evaluations in this run and all earlier runs."""
+        """Return the numbers of accepted steps, rejected steps and evaluations, in this and all earlier runs."""
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
@@ -564,7 +568,7 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run once for each segment between switching times, prepared for that segment.
+        """Yield the run once for each segment between switching times, prepared so that the caller can integrate it.
 
         At the end, the cost of the run is added to the counts of the integration.
         """

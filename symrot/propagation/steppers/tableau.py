@@ -234,7 +234,7 @@ DENSE: Mapping[int, Mapping[int, str]] = {
 
 
 def _sum(row: Mapping[int, str]) -> str:
-    """Return the C text of a weighted sum of stages, ``a*k(1) - b*k(5) ...``, in the order of the stages."""
+    """Return a weighted sum of stages as C text, such as ``0.5*k(1) - 0.25*k(5)``, in the order of the stages."""
     terms = [f"{'-' if value.startswith('-') else '+'} {value.lstrip('-')}*k({stage})" for stage, value in row.items()]
     return " ".join(terms).removeprefix("+ ")
 

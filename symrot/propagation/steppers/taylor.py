@@ -64,10 +64,10 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return the allowed size of a series' last terms, and the share of the span from which a step may use all of it.
+    """Return how large a series' last terms may be in a step that covers a certain share of the span, and this share.
 
-    For a shorter step the size is multiplied by the power 7/4 of the ratio of the step to that part of the span: errors
-    of single steps add up about as the number of steps to this power. The final error then hardly depends on the span.
+    For a step that is shorter by a factor r, this size is multiplied by r^(7/4): errors of single steps
+    add up about as the number of steps to this power. The final error then hardly depends on the span.
 
     The constant is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
     intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.
@@ -89,7 +89,7 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
 
 
 def refusal(program: Program) -> str:
-    """Return a sentence that says why a right-hand side has no Taylor series, or an empty text if it has one."""
+    """Return a sentence that says why a right-hand side has no Taylor series; an empty text if it has one."""
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -176,7 +176,7 @@ def integration(
 
 
 class _Stepper(Stepper):
-    """A loaded library with a jet and the Taylor stepper, built from :func:`translation_unit`."""
+    """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
 
     name = "taylor"
     reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")

@@ -44,9 +44,9 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times do not lie beyond this instant.
+        """Return how many of the times the motion has reached at this instant.
 
-        The times increase if ``side`` is 1 and decrease if it is -1.
+        The times increase if ``side`` is 1 and decrease if it is -1, as the motion does.
         """
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:

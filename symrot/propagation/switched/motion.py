@@ -91,7 +91,7 @@ class SwitchedMotion(MotionInParts):
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
         """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
 
-        If an error ends the motion early, it is appended to ``broken``.
+        If an error ends the motion early, it is appended to ``broken`` and the motion before it is returned.
         """
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
@@ -104,7 +104,7 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from times in a span, s, to states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
@@ -121,7 +121,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A motion under torques with switching functions, as a function of time, composed of its smooth parts."""
+    """A function from time to states for a motion under torques with switching functions, made of its smooth parts."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

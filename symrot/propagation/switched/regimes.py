@@ -33,10 +33,10 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive as long as the mode of a switching function (sign, abs, ..) keeps its present value.
+    """A formula that stays positive until a switching function (sign, floor, ..) changes its value.
 
-    ``change`` says how the mode changes when the formula becomes negative. ``where`` lists the conditions under which
-    the switching function affects the motion.
+    The value is called the mode of the function; ``change`` says how it changes when the formula becomes negative.
+    ``where`` lists the conditions under which the function affects the motion.
     """
 
     mode: str
@@ -47,10 +47,10 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of a smooth motion for given modes, as functions of the epoch, the time at which the clock shows 0.
+    """Parameters of the equations of a smooth motion between switches, as functions of the epoch.
 
-    ``invariants`` are the parameters of conserved quantities, as pairs of doubles that do not depend on the epoch; only
-    the Taylor stepper uses them.
+    The epoch is the scene time at which the clock of the motion shows 0. ``invariants`` are the parameters of conserved
+    quantities, as pairs of doubles that do not depend on the epoch; only the Taylor stepper uses them.
     """
 
     rates: ShiftedParameters
@@ -120,7 +120,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the regime for given modes of its switching functions."""
+        """Return the parameters of the equations for given modes (values of switching functions: sign, floor, ..)."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -138,9 +138,9 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of the modes and of all parameters that occur in :attr:`formulas`.
+        """Return the values, by name, of all names in :attr:`formulas`, the arguments of the switching functions.
 
-        Time is counted from the instant ``zero``.
+        They are the modes (values of the switching functions) and parameters; time is counted from ``zero``.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -148,9 +148,9 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper, and the parameters of the library that searches for zeros of guards.
+        """Return two lists of parameters: for the stepper, and for the library that searches for switches.
 
-        Time is counted from the instant ``zero``.
+        They hold for the given modes (values of the switching functions), with time counted from ``zero``.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -163,11 +163,17 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the states and of the parameters of the output quantities whose values are zero."""
+        """Return the names of all states and parameters of output quantities that are zero at the state ``y``.
+
+        From them follows which arguments of sign functions stay zero without a torque.
+        """
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per held guard; all are positive while nearby motions return to the zeros of the guards."""
+        """Return one number per held mode; all are positive if nearby motions are driven back to the sliding motion.
+
+        While the motion slides, the arguments of the held functions (sign, ..) stay at zero.
+        """
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
         quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
@@ -189,7 +195,10 @@ class Regime:
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and output quantities as formulas in the epoch and modes only."""
+        """Return the parameters of rates, guards and output quantities, with the scene's constants inserted.
+
+        They are then formulas in the epoch and in the modes (values of the switching functions) alone.
+        """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -200,7 +209,10 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard, whether its zero ends the regime for the given modes."""
+        """Return, for each guard (formula whose zero makes a function switch), whether its zero ends the smooth motion.
+
+        It does not if the function has no effect for the given modes, as in an unused branch of ``where``.
+        """
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
@@ -208,7 +220,7 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula that is zero where a switching function changes its value.
+    """Return a formula that is zero where a switching function (sign, floor, ..) changes its value.
 
     For a sign it is the argument; for a floor, the argument minus the present integer. The integer is subtracted before
     the formula is rounded, since far from t = 0 it cancels most digits of the argument.
@@ -217,7 +229,7 @@ def _distance(switch: Switch) -> Node:
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program with the additional parameters ``more``, which its outputs do not use."""
+    """Return the program with the additional parameters ``more``, which only the search for switches uses."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

@@ -44,11 +44,14 @@ SHORT = 1e-9  # part of the span: distance beyond an instant without rates at wh
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 Consumer = Callable[["Chunk"], None]
 SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
-"""The names and values of all modes that are not held, and the names of the held modes."""
+"""A state of all switching functions: the modes that are not held, with their values, and the names of held modes."""
 
 
 class Chunk(NamedTuple):
-    """Part of a motion from ``start`` to ``stop``: states and polynomials as functions of the time since ``zero``."""
+    """Part of a motion from ``start`` to ``stop``, as a function from times to states and as polynomials.
+
+    Its own function and polynomials take the time since the instant ``zero``; the methods take times of the scene.
+    """
 
     start: Instant
     stop: Instant
@@ -61,7 +64,7 @@ class Chunk(NamedTuple):
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
-        """Return the polynomials with their times converted to times of the scene."""
+        """Return the polynomials of this part of the motion, with times converted to times of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
         edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
@@ -70,7 +73,7 @@ class Chunk(NamedTuple):
 
 
 class SwitchedRun(RunState):
-    """The work of following a motion under torques with switching functions from its start to one end.
+    """The computation of one motion under torques with switching functions (sign, abs, ..), from its start to its end.
 
     The clock shows 0 at the last switch, whose time is known to twice the digits of a double. ``t``, the present time,
     and ``end`` are times on this clock, s.
@@ -95,7 +98,7 @@ class SwitchedRun(RunState):
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Follow the motion to its end; call ``consume`` with each part as soon as the part is known."""
+        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -123,15 +126,15 @@ class SwitchedRun(RunState):
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Make ``zero``, which is the present time of the motion, the instant at which the clock shows 0."""
+        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``."""
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped if a guard is zero at the start and may become positive or negative.
+        """Raise IntegrationStopped if the start allows two motions.
 
-        Then there are two motions from the same start.
+        This is so if the argument of a switching function is zero at the start and may become positive or negative.
         """
         for switch in self.system.switches:
             mode = switch.mode
@@ -152,10 +155,10 @@ class SwitchedRun(RunState):
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Follow one smooth part of the motion; return the guard that ended it, or None.
+        """Compute the motion up to its next switch, and return the guard of the function that switches there, or None.
 
-        None means that the motion has reached its end, or that a mode was set and the motion has to be followed again
-        from the present time.
+        None means that the motion has reached its end, or that the value of a function such as sign was corrected and
+        the motion has to be computed again from the present time.
         """
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
@@ -255,10 +258,10 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard that should switch next at an instant at which the rates have no value, or None.
+        """Return the guard of the function that should switch next at the present time, where the rates have no value.
 
-        Just after the instant, the sign of its formula is at most ``most``. If several functions switch at one instant,
-        they switch one after the other, and the rates may have no value in between.
+        If several functions switch at one time, they do so one after the other, and in between the rates may have no
+        value, such as sqrt(-1). The guard is one whose sign just after this time is at most ``most``, or None.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -272,14 +275,14 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Make the instant of a switch the present time, with the clock at 0, unless the motion ends there."""
+        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there."""
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
         self.hopped = False
 
     def _forget_changes(self) -> None:
-        """Clear the lists of functions that switched at one time, because the motion has left that time."""
+        """Clear all lists of functions that switched at the present time, because the motion goes on from it."""
         self.flipped, self.order = {}, []
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
@@ -332,7 +335,10 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether the formula of a guard falls from >= 0 to <= 0 between two points (time, states)."""
+        """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion.
+
+        It does if the formula of its guard falls from >= 0 to <= 0.
+        """
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
@@ -346,10 +352,10 @@ class SwitchedRun(RunState):
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the instant near the time t at which the formula of a guard is zero.
+        """Return the time of a switch near t, at which the formula of a guard is zero, as an :class:`Instant`.
 
-        If the formula depends on time alone, it is evaluated to full accuracy in time counted from t, and one step of
-        Newton's method locates its zero to twice the digits of t. Otherwise the instant t is returned.
+        If the formula depends on time alone, one step of Newton's method from t gives the zero to twice the digits of
+        a double. Otherwise t itself is returned.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -371,9 +377,10 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return the first instant tried, from ``instant`` on, at which a guard of time alone is not positive.
+        """Move the time of a switch past the zero of its guard, whose formula depends on time alone, and return it.
 
-        If the zero were rounded to an earlier instant, the function would switch back at once.
+        The result is the first of a few instants at which the formula is not positive. At an earlier instant, the
+        function (sign, floor, ..) would switch back at once.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -385,7 +392,10 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard of time alone is negative just after its switch only because time is rounded."""
+        """Return whether a guard is negative, just after its function has switched, only because time is rounded.
+
+        The function then must not switch again. The formula of the guard must depend on time alone.
+        """
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
         later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
@@ -395,7 +405,11 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: those negative just after the start of a piece, and those negative at its end."""
+        """Return two lists of guards: those that are negative just after the start of a piece, and those at its end.
+
+        A guard is negative if its function (sign, floor, ..) should have switched. ``active`` and ``values``
+        belong to the present modes.
+        """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -404,9 +418,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Set the modes whose guards stay at zero to their values at zero; return whether a mode changed.
+        """Set each function such as sign(x) to its value at zero if x stays at zero; return whether a value changed.
 
-        A mode of 0 changes to the sign of its guard as soon as the guard is not zero.
+        A sign that was set to 0 in this way gets the sign of x as soon as x is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -438,14 +452,14 @@ class SwitchedRun(RunState):
             self.order += changed
             self.settled += 1
             if self.settled > MOST_SWITCHES:
-                raise IntegrationStopped(self.t, "its switches change endlessly at this time", self.end)
+                raise IntegrationStopped(self.t, "the torque switches again and again at this time", self.end)
         self.modes = settled
         return bool(changed)
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the value of the guard that belongs to a mode, at the present time or at ``place`` = (time, states).
+        """Return the argument of the switching function that a mode replaces, now or at ``place`` = (time, states).
 
-        For a floor it is the guard minus the mode.
+        For a floor the present value of the floor is subtracted, so that it switches at 0 and 1.
         """
         regime = self._regime(self.modes)
         return float(
@@ -453,7 +467,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values, by name, of all variables that occur in guards, at ``place`` = (time, states)."""
+        """Return the values of all names in the arguments of switching functions, at ``place`` = (time, states)."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -462,9 +476,10 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Change the mode of a function whose guard crosses zero.
+        """Switch a function (sign, floor, ..) whose guard has become zero: change its mode, the value in the formulas.
 
-        If the rates before and after the change drive the guard back to zero, it is held there: the motion slides.
+        If the rates before and after the change both drive the argument of a sign back to zero, it is held at zero: the
+        motion slides.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
@@ -510,9 +525,10 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether a mode has to be held: its change of sign would restore an earlier state of all functions.
+        """Return whether the argument of a sign has to be held at zero, so that the motion slides.
 
-        If a function that jumps has switched since that state, a function that only bends is not held.
+        It has to if changing the sign once more would restore a state of all functions that occurred before at the
+        present time. A function with only a kink, such as abs, is not held if a function with a jump switched since.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -521,26 +537,32 @@ class SwitchedRun(RunState):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the state of all switching functions: now, or if ``flip`` changed sign, or if ``hold`` were held."""
+        """Return the values of all switching functions and the set of held ones, for comparison with earlier states.
+
+        If a name is given, the state is the one after ``flip`` has changed its sign, or after ``hold`` becomes held.
+        """
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether, at the present time, a function inside the guard of ``mode`` has switched after ``mode``."""
+        """Return whether a function that occurs in the argument of another one (``mode``) has switched after it.
+
+        Only switches at the present time count. An example is the sign in abs(x + sign(y)).
+        """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names that occur in the guard of a mode."""
+        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas."""
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the modes of the switching functions that do not affect the motion at present (see ``where``)."""
+        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the mode of a switching function that begins to affect the motion to the value that fits its guard."""
+        """Set a switching function that begins to affect the motion to the value that its argument has now."""
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):
@@ -566,10 +588,10 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set held modes that stay at zero without torque to their values at zero; return whether there are any.
+        """Set each held sign(x) whose x stays at zero by itself to sign(0), and return whether there are any.
 
-        A body at rest then moves with the values of all functions at zero, not with a mean of the values for positive
-        and negative guards.
+        While x is held at zero, the formulas contain a mean of sign(x) = 1 and -1. If nothing drives x away from zero,
+        as in a body at rest, the value at zero is right instead.
         """
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
@@ -583,15 +605,15 @@ class SwitchedRun(RunState):
         return bool(resting)
 
     def _still_attracts(self, regime: Regime) -> bool:
-        """Return whether nearby motions return to the zeros of the held guards faster than errors drive them away.
+        """Return whether nearby motions return to the sliding motion faster than numerical errors drive them away.
 
-        If they do not, numerical errors would decide which sign the guards get.
+        If they do not, numerical errors would decide to which side the motion leaves the switching surface.
         """
         now, least = regime.attraction(self.modes, self.zero, self.t, self.y), ERRORS * regime.motion.tolerance
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Set each mode that is 0 to the sign of its guard at the end of a piece; return whether a mode changed."""
+        """Set each sign(x) that is 0 to the sign that x has at the end of a piece; return whether one changed."""
         numbers = [
             n
             for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))
@@ -607,14 +629,17 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the regime (smooth motion) for given modes, in which the held guards are zero."""
+        """Return the regime (smooth motion between switches) for given values of the switching functions.
+
+        In it, the arguments of the held functions stay at zero.
+        """
         try:
             return self.system.regime(self.held, modes)
         except InputError:
             raise IntegrationStopped(
                 self.t,
                 f"the motion would slide along {self._names_of_held()}, but not in exactly one way: "
-                "the equations have no such motion, or several",
+                "the equations have no such motion or several",
                 self.end,
             ) from None
 
@@ -622,9 +647,9 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if the guard of another jumping function is zero wherever the held guards are.
+        """Raise IntegrationStopped if another function that jumps has an argument of zero all along the sliding motion.
 
-        The value of this function is then not determined while the motion slides.
+        The equations then do not determine the value of this function.
         """
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]
@@ -672,7 +697,7 @@ class SwitchedRun(RunState):
         near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
         if near or self.switches > MOST_SWITCHES:
             within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
-            raise IntegrationStopped(self.t, f"its switches follow one another endlessly ({within})", self.end)
+            raise IntegrationStopped(self.t, f"the torque switches again and again without end ({within})", self.end)
 
     def _name(self, mode: str) -> str:
         return str(self.by_name[mode].label)

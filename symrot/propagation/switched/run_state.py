@@ -29,9 +29,9 @@ class RunState:
     y : array, shape (N,)
         The states at ``t``.
     spent, mark : int, (int, float)
-        Number of SciPy's evaluations so far; this number and the time covered, s, when the pace was last checked.
+        Number of SciPy's evaluations so far; the same number, and the time covered, s, at the last check of the pace.
     interrupt : KeyboardInterrupt or None
-        An interrupt that came while SciPy followed the motion beyond a switch.
+        A Ctrl-C that came while SciPy computed the motion beyond a switch.
     recent : deque of Instant
         The times of the last switches.
     """
@@ -51,10 +51,10 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function of an epoch, s, that returns the rates ``stepped`` and their parameters for this epoch.
+        """Return a function that takes an epoch, s, and returns the rates and the parameters to use with this epoch.
 
-        ``stepped`` is a library or a function. With these parameters the rates count time from the epoch. Return None
-        if the rates do not depend on time.
+        The rates ``stepped`` are a compiled library or a Python function; with the parameters they count time from the
+        epoch. Return None if the rates do not depend on time.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

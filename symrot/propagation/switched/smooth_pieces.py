@@ -118,7 +118,7 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return the length of the first window, s.
+        """Return the length, s, of the first window: the interval that SciPy computes before the search for a switch.
 
         It is twice the longest recent smooth part or twice the time of a few rotations, whichever is shorter, within
         limits. If the window were longer, the work beyond the next switch would be wasted.
@@ -152,7 +152,7 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return an iterator over the pieces of the smooth motion that begins at the present state of a run.
+    """Return an iterator over pieces of the smooth motion that begins at the present state of a run, up to a switch.
 
     ``regime`` contains the rates of the motion; ``rates`` lists the values of their parameters.
     """

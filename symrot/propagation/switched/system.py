@@ -33,7 +33,7 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 class SwitchedSystem:
     """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) in between.
 
-    There is one regime for each set of guards that are held at zero.
+    There is one regime for each set of functions whose arguments stay at zero while the motion slides.
     """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
@@ -42,7 +42,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions of all torques; their modes are constants of the plan and have the same names."""
+        """The switching functions of all torques, with the names that their modes have among the plan's constants."""
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -51,11 +51,12 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """For each mode, the modes of the same torque that change at the same time (twins), the mode itself included.
+        """For each sign or abs in a torque, the functions of this torque that switch at the same time: its twins.
 
-        Each twin is a pair (mode, sign): the sign is 1 if its guard has the same sign as the guard of the first twin,
-        else -1. Functions that jump come first. For example, sign(omega_3) and abs(2*omega_3) are twins in a bearing
-        friction that is greater at rest.
+        Two functions are twins if their arguments are multiples of each other, as in sign(omega_3) and abs(2*omega_3).
+        Each list contains the function itself, and functions that jump come first. A function is named by its mode,
+        the number that replaces it in the formulas; a twin is a pair (mode, 1 or -1), where -1 says that its argument
+        and the first twin's argument have opposite signs.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -72,14 +73,19 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return, for each mode that equals a held mode or the negative of one, the pair (held mode, 1 or -1)."""
+        """Return the modes (values of sign, abs, ..) that follow from held modes, as mode -> (held mode, 1 or -1).
+
+        A mode is held while the argument of its function stays at zero. A mode of a function that switches at the same
+        time equals the held mode (1) or its negative (-1).
+        """
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether the motion on a switching surface, where the guard stays zero, depends on the value sign(0).
+        """Return whether a motion along a switching surface, where the argument x of sign(x) stays zero, needs sign(0).
 
-        It does if another function jumps on the same surface, or if a torque is not linear in the sign. Otherwise a
-        mean of +1 and -1, which keeps the guard at zero, determines the motion.
+        It does if another function jumps on the same surface, or if a torque is not linear in sign(x). Otherwise the
+        mean of +1 and -1 that keeps x at zero determines the motion. ``mode`` is the name of the number that replaces
+        sign(x) in the formulas.
         """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             return False
@@ -89,7 +95,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes of switching functions with constant guards: without time, states and modes that change."""
+        """The switching functions (named by their modes) whose arguments are constant, so that they never switch."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -101,15 +107,15 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the modes at the start of the motion, by name.
+        """Return the values of all switching functions (sign, floor, ..) at the start of the motion, by mode name.
 
-        A guard that is zero at the start counts as positive until the motion determines its sign.
+        If the argument of a sign is zero at the start, the sign counts as 1 until the motion determines it.
         """
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The modes of switching functions whose guards are zero at the start and depend on states."""
+        """The switching functions (named by their modes) whose arguments depend on states and are zero at the start."""
         return self._initial_modes[1]
 
     @cached_property
@@ -117,9 +123,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the modes just after a start at which the guard of ``mode`` is zero, if it gets the given sign.
+        """Return the values of all switching functions just after the start, if ``mode`` is 1 or -1, as ``sign`` says.
 
-        Modes that depend on ``mode`` change with it.
+        The argument of this function is zero at the start, so that both signs are possible. Functions whose arguments
+        contain it change with it.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -147,10 +154,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the regime (smooth motion) in which the guards of the modes ``held`` stay at zero.
+        """Return the regime (smooth motion) in which the arguments of the switching functions ``held`` stay at zero.
 
-        It is derived on first use. The values of the other modes are used only to choose between the parts of a
-        ``where``.
+        It is derived on first use. The values ``modes`` of the other functions only choose between the branches of
+        each ``where(condition, u, v)``.
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -168,7 +175,9 @@ class SwitchedSystem:
                 ]
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
-                        raise InputError(f"torque: {switch.label} contains a function along which the motion slides")
+                        raise InputError(
+                            f"torque: the motion slides along a function inside {switch.label}, which then has no value"
+                        )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
             self._regimes[key] = self._regime_of[content]
@@ -176,7 +185,7 @@ class SwitchedSystem:
 
     @cached_property
     def _chooses(self) -> bool:
-        """Whether a ``where`` in a torque has a part that must not be evaluated outside its condition."""
+        """Whether a torque has a ``where(condition, u, v)`` with a branch that must not always be evaluated."""
         return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
@@ -189,7 +198,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions of a torque; their modes are constants of the plan and have the same names."""
+    """Return the switching functions of a torque, with the names that their modes have among the plan's constants."""
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -205,7 +214,7 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is not linear in a mode."""
+    """Return whether a formula of the torque is nonlinear in a mode, the number that replaces sign, abs, .. in it."""
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
     return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
@@ -217,9 +226,9 @@ def is_continuous(switch: Switch) -> bool:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a formula has a kink but no jump where a switching function switches.
+    """Return whether a function only has a kink where it switches, as abs has, and no jump, as sign has.
 
-    At the switch, either value of the mode then gives the right result.
+    At the switch itself, both values of its mode (the sign of its argument) then give the right result.
     """
     return switch.at_zero == 1
 
@@ -227,10 +236,11 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque reduced to the parts of its formulas that apply for given modes of its switching functions.
+    """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
 
-    Switching functions without effect are left out. ``tied`` names the modes that equal a held mode or its negative:
-    where the formula jumps, each is replaced by the held mode or its negative. Formulas become linear in held modes.
+    The values are given by ``modes``; functions without effect are left out. For functions whose arguments stay at zero
+    (``held``), the formulas become linear in their values. Functions in ``tied`` have the value of a held function
+    or its negative, which replaces them.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

@@ -1,4 +1,4 @@
-"""The findings about the claims of four textbooks and courses: as a table, as data, and as the pages of errata."""
+"""Reports on the checked formulas of four textbooks and courses: a table, JSON data, and the pages of errata."""
 
 from symrot.report.errata.entries import Survey, survey
 from symrot.report.errata.page import html, page

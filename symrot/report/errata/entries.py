@@ -1,4 +1,4 @@
-"""The entries of the errata: an error with its formulas, as printed and corrected, its reason, and its proof."""
+"""The entries of the errata: each describes one error of a document, with its formulas, its reason and its proof."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Decide the claims of some textbooks and return the verdicts, with corrections of claims that do not hold."""
+    """Check the claims of some textbooks and return the verdicts, with corrections of the claims that do not hold."""
     documents = []
     for name in names:
         source = document(name)
@@ -27,7 +27,7 @@ def survey(
 
 @dataclass(frozen=True)
 class Correction:
-    """A formula of a document in LaTeX: where it is, as printed, and as it should be; the latter may be empty."""
+    """A faulty formula of a document: its place, its LaTeX as printed, and its corrected LaTeX (empty if unknown)."""
 
     where: str
     printed: str
@@ -41,12 +41,12 @@ class Entry:
     Attributes
     ----------
     title, where, why : str
-        What it is about, its places, and the reason in words.
+        Its subject, its places in the document, and the reason why the formula is wrong.
     corrections : tuple of Correction
     proof : str
-        One sentence: against what the formula was checked, and where it differs.
+        One sentence: the reference with which the formula was compared, and a point at which the two differ.
     extracted : tuple of str
-        The lines of the document, as they were extracted.
+        The lines of the document, as they were extracted from its PDF file.
     """
 
     title: str
@@ -58,7 +58,10 @@ class Entry:
 
 
 def entries(findings_of_document: Sequence[Finding]) -> list[Entry]:
-    """Return the errors of a document, each once; an error that no erratum describes has its own entry."""
+    """Return one entry for each error of a document.
+
+    A written erratum may describe several faulty formulas; a faulty formula without an erratum gets its own entry.
+    """
     failing = {item.claim["id"]: item for item in findings_of_document if item.outcome == "fails"}
     listed = [
         _entry(erratum, [failing[formula.claim] for formula in erratum.formulas if formula.claim in failing])
@@ -92,7 +95,7 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 
 
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
-    """Return text that shows a formula as printed and as corrected; only as printed if no correction is known."""
+    """Return a faulty formula as printed and as corrected, with the difference in boxes."""
     where = item.claim["where"]
     if not item.parts:
         digits = {"printed": item.claim["printed_value"]}
@@ -117,7 +120,7 @@ def _with_text(template: str, texts: Mapping[str, str]) -> str:
 
 
 def _proof(item: Finding, letters: Mapping[str, str]) -> str:
-    """Return one sentence on how an error was proven."""
+    """Return one or two sentences that say how a formula was proven wrong."""
     against = item.claim["against"]
     example = _example(item, letters)
     if not item.parts:
@@ -133,7 +136,7 @@ def _proof(item: Finding, letters: Mapping[str, str]) -> str:
 
 
 def _example(item: Finding, letters: Mapping[str, str]) -> str:
-    """Return the values of both sides at a point at which they differ, as the end of a sentence."""
+    """Return the end of a sentence that gives a point at which two formulas differ, and both values there."""
     witness = item.verdict.counterexample
     if witness is None:
         return ""
@@ -161,7 +164,7 @@ WORDS = {
 
 
 def condition_words(condition: str) -> str:
-    """Return a condition as a book would print it.
+    """Return a condition, given as typed text, in the form in which a book would print it.
 
     Examples
     --------
@@ -178,7 +181,7 @@ def condition_words(condition: str) -> str:
 
 
 def _without_negative_terms(relation: Relation) -> Relation:
-    """Return a relation of a sum to zero with the negative terms on the other side: ``b >= a`` for ``-a + b >= 0``."""
+    """Move the negative terms of a sum to the other side of a relation: ``-a + b >= 0`` -> ``b >= a``."""
     sign, left, right = relation
     negative = [term.args[0] for term in left.args if term.kind == "neg"] if left.kind == "sum" else []
     positive = [term for term in left.args if term.kind != "neg"]

@@ -30,7 +30,7 @@ NO_CORRECTION = "No correction near the printed formula is known here."
 
 
 class Block(NamedTuple):
-    """A piece of a page: its kind, and its text as Markdown or LaTeX."""
+    """A block of the page: its kind, such as ``"title"`` or ``"item"``, and its text as Markdown or LaTeX."""
 
     kind: str
     text: str
@@ -42,7 +42,7 @@ def page(survey: Survey) -> str:
 
 
 def html(survey: Survey) -> str:
-    """Return the text of ``errata.html``, a document without script and network."""
+    """Return the text of ``errata.html``, a document that needs no script and no network."""
     return document(TITLE, [HTML[block.kind](block.text) for block in _blocks(survey)], STYLE)
 
 
@@ -86,9 +86,9 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
 
 
 def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the list of conditions without which formulas of a document do not hold.
+    """Yield the blocks of the page that list formulas of a document which hold only under an unstated condition.
 
-    A formula is named by the id of its claim, in words and without the name of the document.
+    The name of a formula is the id of its claim without the document's name: ``chen-velocity-2d`` -> "velocity 2d".
     """
     if not items:
         return
@@ -107,7 +107,7 @@ def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Blo
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the list of lines that may be right in the document, since characters were lost."""
+    """Yield the blocks of the page that list faulty lines whose fault may be characters lost in the extraction."""
     if not items:
         return
     yield Block("entry", "What the extraction may have lost")
@@ -134,7 +134,7 @@ li code, p code { overflow-wrap: anywhere; }
 
 
 def _quoted(text: str) -> str:
-    """Return a text as inline code on one line of Markdown."""
+    """Return a text as inline code of Markdown, on one line."""
     flat = " ".join(text.split())
     fence = "``" if "`" in flat else "`"
     return f"{fence}{flat}{fence}"

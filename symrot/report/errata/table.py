@@ -26,7 +26,7 @@ COUNTED = {
 
 
 def total(items: Sequence[Finding]) -> str:
-    """Return the sentence that counts the claims of a document by outcome."""
+    """Return the sentence that says how many claims of a document hold, fail, or hold under a condition."""
     counts = Counter(finding.outcome for finding in items)
     listed = ", ".join(f"{counts[name]} {words[counts[name] > 1]}" for name, words in COUNTED.items() if counts[name])
     return f"{len(items)} claims: {listed}."

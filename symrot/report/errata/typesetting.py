@@ -1,4 +1,4 @@
-"""LaTeX of the formulas of documents: as printed and corrected, with the difference in boxes."""
+"""LaTeX of the formulas in the errata, as printed and as corrected, with boxes around the differences."""
 
 import re
 from collections import Counter
@@ -15,11 +15,11 @@ __all__ = ["filled", "latex", "marked"]
 HOLE = re.compile(r"@(\w+)@")
 SUBSCRIPTED = re.compile(rf"([A-Za-z]|{'|'.join(GREEK)})_?(\d+|[a-z]{{1,2}})")
 MARK = "mark"
-"""The kind of a node around a changed piece."""
+"""The kind of a node that marks the subexpression inside it as changed."""
 
 
 def marked(printed: Node, corrected: Node) -> tuple[Node, Node]:
-    """Return two formulas with marks around the pieces in which they differ.
+    """Return two formulas with marks around the subexpressions in which they differ; LaTeX shows marks as boxes.
 
     Examples
     --------
@@ -32,7 +32,10 @@ def marked(printed: Node, corrected: Node) -> tuple[Node, Node]:
 
 
 def _flat(node: Node) -> Node:
-    """Return a tree without sums in sums and products in products, and without factors 1."""
+    """Return a formula with nested sums and nested products joined, and without factors 1.
+
+    ``a + (b + 1*c)`` -> ``a + b + c``.
+    """
     args = tuple(map(_flat, node.args))
     if node.kind == "sum":
         return sum_of(list(args))
@@ -62,7 +65,7 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return two sums, or two products, with marks on the members that only one of them has."""
+    """Return two sums with marks on the terms that only one of them has; or two products, with marks on factors."""
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
     befores, afters = list(old.args), list(new.args)
     if len(only_old) == len(only_new):
@@ -79,7 +82,7 @@ def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
 
 
 def _places_of_others(node: Node, other: Node) -> list[int]:
-    """Return the places of the members of a sum or product that another one does not have."""
+    """Return the indices of those terms or factors of a formula that do not occur in the other sum or product."""
     remaining = Counter(other.args)
     places = []
     for place, member in enumerate(node.args):
@@ -91,17 +94,20 @@ def _places_of_others(node: Node, other: Node) -> list[int]:
 
 
 def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
-    """Return the LaTeX of a formula; ``letters`` are the LaTeX of names, ``functions`` names of functions of time."""
+    """Return the LaTeX of a formula.
+
+    ``letters`` maps names to the LaTeX of the document's letters; ``functions`` are the names that depend on time.
+    """
     return _Typesetter(letters, functions).formula(_flat(node) if node.kind != MARK else node)
 
 
 def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str], functions: Collection[str]) -> str:
-    """Return a template of LaTeX in which each ``@name@`` is replaced by the LaTeX of the part of this name."""
+    """Replace each ``@name@`` in a LaTeX template by the LaTeX of the formula ``parts[name]``."""
     return HOLE.sub(lambda hole: latex(parts[hole[1]], letters, functions), template)
 
 
 class _Typesetter(Writer):
-    """Writer of LaTeX for readers: marks, integrals, whole numerators, and the letters of a document."""
+    """Writer of LaTeX as a book prints it: boxes around marks, integrals, fractions, and the document's own letters."""
 
     def __init__(self, letters: Mapping[str, str], functions: Collection[str]) -> None:
         super().__init__(functions, NO_VECTORS)
@@ -140,7 +146,7 @@ class _Typesetter(Writer):
         return written.strip()
 
     def product(self, node: Node) -> str:
-        """Return factors side by side; all scalar factors before a divisor are its numerator."""
+        """Return a product as LaTeX: factors side by side; the factors before a divisor become its numerator."""
         pieces: list[str] = []
         above: list[Node] = []
         for factor in node.args:
@@ -155,7 +161,7 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return factors side by side; ``alone`` says that nothing stands beside them."""
+        """Return factors side by side as LaTeX; ``alone`` says that the product has no other factors or fractions."""
         alone = alone and len(factors) == 1
         written = ""
         after_function = False
@@ -179,7 +185,7 @@ class _Typesetter(Writer):
         return super().power(node)
 
     def argument(self, call: Node) -> str:
-        """Return the argument of a function, without brackets if it is a single letter."""
+        """Return the LaTeX of a function's argument, without brackets if it is a single letter: sin x, sin(x + y)."""
         whole = call.args[0].args[0] if call.args[0].kind == MARK else call.args[0]
         if len(call.args) == 1 and (whole.kind == "name" or (whole.kind == "call" and whole.value in self.timed)):
             return f" {self.formula(call.args[0])}"

@@ -61,8 +61,8 @@ GOOD, BAD = ("true", "conditional", "recognised"), ("false", "doubtful")
 AGREEING: dict[str, tuple[str, ...]] = {
     "sign": ("sign_of_term", "overall_sign", "inertia_product_sign", "quaternion_product_order", "commutator_order",
              "active_passive_transpose"),
-    "factor": ("factor",), "missing_square": ("exponent", "factor"), "exponent": ("exponent", "factor"),
-    "wrong_denominator": ("factor", "wrong_symbol", "sin_cos_swap", "exponent"),
+    "factor": ("factor", "half_angle", "double_half_angle"), "missing_square": ("exponent", "factor"), "exponent": ("exponent", "factor"),
+    "wrong_denominator": ("factor", "wrong_symbol", "sin_cos_swap", "exponent", "sign_of_term", "extra_term"),
     "half_angle": ("half_angle", "double_half_angle"), "missing_term": ("missing_term", "factor"),
     "swapped_function": ("sin_cos_swap",), "swapped_index": ("wrong_symbol",),
     "wrong_axis": ("wrong_symbol", "wrong_sequence_type"),

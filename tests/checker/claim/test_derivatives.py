@@ -26,3 +26,25 @@ def test_a_rate_that_nothing_defines_is_no_identity(claim):
     verdict = symrot.check(claim, repair=False)
     assert verdict.verdict == "definition"
     assert "nothing here says" in verdict.reason
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("diff(x*y, q) == diff(x, q)*y + x*diff(y, q)", "true"), ("diff(x*y, q) == diff(x, q)*diff(y, q)", "false"),
+    ("diff(x/y, t) == (diff(x, t)*y - x*diff(y, t))/y**2", "true"), ("diff(m*v, t) == m*diff(v, t)", "true"),
+    ("diff(m*v**2/2, t) == m*v*diff(v, t)/2", "false"), ("diff(I*w, t) == I*diff(w, t) + w*diff(I, t)", "true"),
+    ("diff(x*cos(phi(t))**2, t) == diff(x, t)*cos(phi(t))**2 + x*diff(cos(phi(t))**2, t)", "true"),
+    ("diff(x*cos(phi(t))**2, t) == diff(x, t)*(sin(a)**2 + cos(a)**2)", "false"),
+    ("d/dx (u v) = u dv/dx + v du/dx", "true"), ("diff(I*w, t) == diff(H, t) + m", "definition"),
+    ("diff(x*diff(y, x), x) == x*diff(y, x)", "definition"), ("diff(r*w, t) == diff(p, t)", "definition"),
+    ("diff(x*cos(phi(t))**2, t) == diff(x/4, t)", "false"), ("diff(x*y, t) == diff(y*x, t)", "true"),
+    ("diff(Rz(phi(t)), t) == diff(Rz(b)*Rz(-b), t)", "false"), ("diff(I*w, t) == 0", "definition"),
+    ("diff(y, x) == y", "definition"), ("diff(x*y, p) == diff(x, q)*y", "definition"),
+])  # fmt: skip
+def test_rules_of_differentiation_are_decided_for_all_functions(claim, verdict):
+    """Letters that the text differentiates are functions; an equation for them is no rule."""
+    assert symrot.check(claim, repair=False).verdict == verdict
+
+
+def test_letters_of_a_rule_are_called_functions_or_constants():
+    notes = symrot.check("diff(m*x*y, q) == m*diff(x, q)*y + m*x*diff(y, q)").notes
+    assert notes == ("x and y are functions of q here", "m is a constant here")

@@ -44,6 +44,17 @@ def test_a_condition_or_a_formula_for_a_tensor_is_not_false(text):
     assert symrot.check(text).verdict == "definition"
 
 
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("v_i = ε_ijk ω_j r_k", "recognised"), ("I_ij = ∫(r² δ_ij - x_i x_j) dm", "recognised"),
+    (r"I_{ij} = \int \rho (x_k x_k\delta_{ij} - x_i x_j)\,dV", "recognised"),
+    ("I_ij = ∫(r² δ_ij + x_i x_j) dm", "definition"), ("(a × b)_i = ε_ijk a_j b_k", "true"),
+    (r"(\mathbf a\times\mathbf b)_i = \epsilon_{ijk} a_k b_j", "false"),
+    ("R_ij = cos θ δ_ij + (1 - cos θ) n_i n_j - sin θ ε_ijk n_k", "recognised"),
+])  # fmt: skip
+def test_a_formula_for_components_is_one_for_the_whole_quantity(text, verdict):
+    assert symrot.check(text, repair=False).verdict == verdict
+
+
 def test_the_indices_are_named_in_a_note():
     assert any("j, k, l, m take every value" in note for note in symrot.check(CASES[3][0]).notes)
 

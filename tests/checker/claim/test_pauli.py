@@ -13,6 +13,15 @@ CASES = (
     ("σ_y σ_x = -i σ_z", Y @ X + 1j * Z),
     (r"\sigma_1 \sigma_2 - \sigma_2 \sigma_1 = 2 i \sigma_3", X @ Y - Y @ X - 2j * Z),
     (r"\sigma_x \sigma_y \sigma_z = i", X @ Y @ Z - 1j * np.eye(2)),
+    ("[σ_x, σ_y] = 2i σ_z", X @ Y - Y @ X - 2j * Z),
+    (r"[\sigma_x, \sigma_y] = i \sigma_z", X @ Y - Y @ X - 1j * Z),
+    ("{σ_x, σ_y} = 0", X @ Y + Y @ X),
+    (r"\{\sigma_x, \sigma_y\} = 2i\sigma_z", X @ Y + Y @ X - 2j * Z),
+    ("σ_x^2 = 1", X @ X - np.eye(2)),
+    ("σ_x σ_y = σ_y σ_x", X @ Y - Y @ X),
+    (r"\sigma_y^2 = I", Y @ Y - np.eye(2)),
+    ("tr(σ_x σ_y σ_z) = 2i", np.trace(X @ Y @ Z) - 2j),
+    ("tr(σ_x^2) = 1", np.trace(X @ X) - 1),
     ("(1 + i σ_z) σ_x (1 - i σ_z) = -2 σ_y", (np.eye(2) + 1j * Z) @ X @ (np.eye(2) - 1j * Z) + 2 * Y),
 )
 
@@ -22,13 +31,23 @@ def test_products_are_those_of_the_matrices(text, difference):
     assert symrot.check(text).verdict == ("false" if np.any(difference) else "true")
 
 
+@pytest.mark.parametrize("text", [
+    "σ_j σ_k = δ_jk + i ε_jkl σ_l", r"[\sigma_i, \sigma_j] = 2i\epsilon_{ijk}\sigma_k", r"\{\sigma_i, \sigma_j\} = 2\delta_{ij} I",
+])  # fmt: skip
+def test_products_in_index_notation(text):
+    assert symrot.check(text).verdict == "true"
+    assert symrot.check(text.replace("2", "3").replace("= δ", "= 2δ")).verdict == "false"
+
+
 def test_half_angles_rotate_a_matrix():
     half = r"(\cos\frac{\theta}{2} %s i\sigma_z \sin\frac{\theta}{2})"
     text = half % "-" + r"\sigma_x" + half % "+" + r" = \sigma_x \cos\theta + \sigma_y \sin\theta"
     assert symrot.check(text).verdict == "true"
 
 
-@pytest.mark.parametrize("text", ["σ_x = E ε_x", "v_i = i σ_x + σ_y"])
+@pytest.mark.parametrize(
+    "text", ["σ_x = E ε_x", "v_i = i σ_x + σ_y", "σ_x + σ_y = 3", "σ_v^2 = σ_x^2 - σ_x σ_y + σ_y^2"]
+)
 def test_other_quantities_with_these_letters_are_not_false(text):
     assert symrot.check(text).verdict == "definition"
 

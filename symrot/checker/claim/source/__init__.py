@@ -1,1 +1,1 @@
-"""Claims read from their sources: a text, the lines of a text, or a TOML file."""
+"""Claims from their sources: from one text, from the lines of a text, or from a TOML file."""

@@ -1,4 +1,4 @@
-"""Claims read from a TOML file, which does not say which of them are true."""
+"""Reading claims from a TOML file. The file does not say which claims are true."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ MOST_NAMES = 500
 
 @dataclass(frozen=True)
 class Refusal:
-    """An entry of a file that cannot be read as a claim: its id, place and text, and a sentence with the reason."""
+    """A claim of a file that cannot be read: its id, place and text, and a sentence with the reason."""
 
     id: str
     where: str
@@ -45,7 +45,7 @@ class Refusal:
 
 
 def read_claims(path: str | Path) -> list[Claim]:
-    """Return the claims of a TOML file, all of which must be readable.
+    """Return the claims of a TOML file; raise InputError if one of them cannot be read.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
         raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
     tables = table.get("claim")
     if not isinstance(tables, list) or not tables or not all(isinstance(entry, dict) for entry in tables):
-        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'something else'}")
+        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not tables else 'other values'}")
     if len(tables) > MOST_CLAIMS:
         raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(tables)}")
     entries: list[Claim | Refusal] = []
@@ -144,7 +144,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
             raise InputError(f"{place}: expected the key printed_value together with the key value, got value alone")
         if others:
             raise InputError(
-                f"{place}: alternatives: expected other readings of a claim, got them together with a value"
+                f"{place}: alternatives: expected this key together with claim or latex, got it together with value"
             )
         sources["value"] = entry["value"]
         value = read_expression(entry["value"], f"{place}: value", own)
@@ -168,7 +168,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names of a claim for the LaTeX reader, with matrices and columns in separate sets."""
+    """Return the names that a claim declares for the LaTeX reader, which treats matrices and columns separately."""
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}
@@ -217,7 +217,7 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those that its entry lists, by default both sides."""
+    """Return the parts of a claim that repairs may change: those that its table lists, by default both sides."""
     parts = tuple(entry.get("editable", SIDES))
     known = (*SIDES, *(name for name, _ in define))
     for part in parts:

@@ -3,13 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.complex_parts import imaginary_unit, open_numbers, substituted
+from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Chain, Reading
-from symrot.checker.claim.source.text import check_units, claim_of_relation
+from symrot.checker.claim.reader import Chain, Reading, readings_of
+from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.context.product_signs import sign_by_integral, with_sign
+from symrot.checker.latex.reader import latex_readings
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
@@ -22,9 +24,10 @@ def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return, for each line of a reading (one interpretation of a text), a list of claims: one per equals sign.
+    """Return the claims of one reading (interpretation) of a text: a list per line, with one claim per equals sign.
 
-    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context.
+    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context:
+    what the user says in words about names and the body.
     """
     define: list[tuple[str, Node]] = []
     lines = []
@@ -36,11 +39,13 @@ def claims_of_reading(
     stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
     numbers = _complex_numbers(reading.lines, context)
+    assume, stated = _with_signs_of_products(assume, stated)
     for chain in reading.lines:
         links = chain.links
         if len(links) > 1 and set(chain.signs) != {"=="}:
             raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
         used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
+        used |= {name.removesuffix(BAR) for name in used} & {*numbers}  # the conjugate of z needs z
         known = _needed(define, used)
         known += [
             item for item in numbers.items() if item[0] in used and item not in define and item[1] not in chain.sides
@@ -56,6 +61,9 @@ def claims_of_reading(
             claims.append(replace(claim, context=stated))
         lines.append(claims)
         first = chain.sides[0]
+        if sign := sign_by_integral(first, chain.sides[1]):
+            stated = with_sign(stated, first, sign)
+            continue
         reserved = ("pi", "t", *(name for name, _ in define))
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
         if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
@@ -63,19 +71,34 @@ def claims_of_reading(
     return lines
 
 
-def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the names of complex numbers, each with the formula that a line such as ``z = x + i*y`` gives it.
+def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
+    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context in which they state a sign."""
+    others = []
+    for source in assume:
+        readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")
+        left, right = readings[0].lines[0].sides[:2]
+        if sign := sign_by_integral(left, right):
+            stated = with_sign(stated, left, sign)
+        else:
+            others.append(source)
+    return others, stated
 
-    A complex number without such a line has a name for its real part and one for its imaginary part.
+
+def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
+    """Return the formula of each complex number: the one that a line such as ``z = x + i*y`` gives it.
+
+    A complex number without such a line becomes ``Re_z + i*Im_z``, with new names for its parts.
     """
     unit = imaginary_unit(formulas)
     if unit is None:
         return open_numbers(formulas)
-    return {
+    numbers = {
         str(chain.sides[0].value): chain.sides[1]
         for chain in lines
         if len(lines) > 1 and chain.sides[0].kind == "name" and unit.value in {n.value for _, n in walk(chain.sides[1])}
-    } or open_numbers(formulas, str(unit.value))
+    }
+    own = {name: tree for name, tree in numbers.items() if name.removesuffix(BAR) not in numbers or BAR not in name}
+    return own or open_numbers(formulas, str(unit.value))
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:

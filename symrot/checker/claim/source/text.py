@@ -1,4 +1,4 @@
-"""Claims read from texts of one equation, with their hypotheses, vectors, matrices and quaternions."""
+"""Reading a claim from the text of one equation, with its hypotheses, vectors, matrices and quaternions."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -51,8 +51,8 @@ ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imag
 def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
     """Return the claim of a text ``left == right``. Text with a backslash, a brace or a dollar sign is read as LaTeX.
 
-    Names become real symbols, or functions of time if they are written ``f(t)``; so do the names in the hypotheses. A
-    text that can be read in two ways is refused; :func:`symrot.checker.claim.source.lines.claims_of_reading` is for it.
+    Names, also those in hypotheses, become real symbols, or functions of time if they are written ``f(t)``. An
+    ambiguous text is refused; :func:`symrot.checker.claim.source.lines.claims_of_reading` accepts such texts.
     """
     vectors: tuple[Vector, ...] = ()
     if isinstance(source, str) and is_latex(source):
@@ -77,10 +77,12 @@ def claim_of_relation(
         For a relation that is no equation, and for units of names that the claim does not have.
     """
     if relation[0] != "==":
-        instead = "an inequality is not decided; write '=' for the case in which both sides are equal"
+        instead = "an inequality cannot be decided here; write '=' to ask whether both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
+    relation, on_form = _with_own_name(relation)
+    notes = [*notes, *([on_form] if on_form else [])]
     names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
     words = {name for name in names if len(name) > 1 and name.isalpha()}
     matrices = {source: _matrix_given(source, words) for source in assume}
@@ -152,22 +154,34 @@ def claim_of_relation(
     )
 
 
+def _with_own_name(relation: Relation) -> tuple[Relation, str]:
+    """Return ``I = n.T*I*n`` with the name I_n for the left side, a number, and a note; other equations unchanged."""
+    sign, left, right = relation
+    first, *rest = right.args if right.kind == "product" else (right,)
+    is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
+    if left.kind != "name" or not is_form or left not in rest[:-1]:
+        return relation, ""
+    name = f"{left.value}_{rest[-1].value}"
+    note = f"{left.value} on the left is the moment {name} about the axis {rest[-1].value}, on the right the tensor"
+    return (sign, Node("name", name), right), note
+
+
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
-    """Return hypotheses in which a name with a rate in one of them is a function of time in all of them."""
+    """Return hypotheses in which a name is written ``f(t)`` everywhere if one of the hypotheses has its rate."""
     nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return name and formula of a hypothesis that defines a matrix, ``R == R_z(psi)*R_y(theta)``; otherwise None."""
+    """Return the name and the formula if a hypothesis defines a matrix, ``R == R_z(psi)*R_y(theta)``; None if not."""
     sign, left, right = read_hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield definitions: of matrices in hypotheses, and of the entries of R that a claim names R_31, R31 or r_31."""
+    """Yield definitions of matrices in hypotheses, and of their entries, which a claim may name R_31, R31 or r_31."""
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
@@ -180,9 +194,9 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation whose unit matrices are written ``eye(n)``, its vectors, and whether it has unit matrices.
+    """Return a relation with unit matrices written ``eye(n)``, its vectors, and whether it has unit matrices.
 
-    A name that is added to a vector is a vector too. The name of an inertia, added to a matrix, is a tensor.
+    A name that is added to a vector is a vector too. The name of an inertia that is added to a matrix is a tensor.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
@@ -202,7 +216,7 @@ def _with_vectors(
 
 
 def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> dict[str, Shape]:
-    """Return the shapes of vectors and of defined names."""
+    """Return the shapes (rows, columns) of vectors and of defined names."""
     shapes: dict[str, Shape] = {}
     for name, tree in (*((vector.name, vector.components) for vector in vectors), *define):
         shapes[name] = shape_of(tree, shapes)
@@ -210,7 +224,7 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return definitions for the quaternions, matrices and columns that a relation uses, and the changed relation."""
+    """Find the quaternions, matrices and columns in a relation; return their definitions and the rewritten relation."""
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}
@@ -231,7 +245,7 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
 
 
 def _on_matrix(name: str) -> str:
-    """Return the note on a name that is read as a matrix."""
+    """Return the note which says that a name is read as a matrix."""
     return (
         f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
         f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
@@ -245,7 +259,7 @@ def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
 
 
 def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
-    """Yield notes on the names that are read as vectors and tensors."""
+    """Yield the notes which say which names are read as vectors and tensors."""
     columns = [vector for vector in vectors if not is_tensor(vector.name) and not vector.is_axis]
     if columns:
         *others, last = sorted(vector.name for vector in columns)
@@ -270,7 +284,7 @@ def _with_natural_base(relation: Relation) -> Relation:
 
 
 def _with_rotated_axes(relation: Relation) -> Relation:
-    """Return a relation with R_x(-a) in place of ``R_x(a)``, which in some books rotates the axes, not the vectors."""
+    """Return a relation with ``R_x(-a)`` in place of ``R_x(a)``, for books in which ``R_x(a)`` rotates the axes."""
 
     def turned(node: Node) -> Node:
         args = tuple(map(turned, node.args))
@@ -283,7 +297,7 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis, read from text; ``words`` are names of the claim, never split into products of letters."""
+    """Return a hypothesis read from text. ``words`` are names of the claim, which are not split into letters."""
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:
@@ -301,7 +315,7 @@ def is_latex(source: str) -> bool:
 
 
 def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names f that occur in hypotheses as ``f(t)`` or with a time derivative."""
+    """Return the names that hypotheses write as ``f(t)`` or with a time derivative."""
     sides = [
         side
         for source in assume
@@ -320,7 +334,7 @@ def functions_of_time(assume: Sequence[str]) -> set[str]:
 
 
 def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str, str]:
-    """Return the units of a claim. Raise InputError for an unknown unit, or for a name that the claim does not have."""
+    """Return the units of a claim; raise InputError for an unknown unit, or for a name that the claim does not have."""
     for name, unit in units.items():
         if name not in known:
             raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")

@@ -1,1 +1,1 @@
-"""Formulas that books name, derived by subject: moments of bodies, kinematics, mechanics."""
+"""Formulas that have a name in books, derived by subject: moments of bodies, kinematics, mechanics."""

@@ -1,4 +1,4 @@
-"""Moments of inertia in forms that books name: with a density, radii of gyration, tilted rods, pairs of masses."""
+"""Moments of inertia in forms that books use: with a density, radii of gyration, tilted rods, pairs of masses."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -19,7 +19,7 @@ Named = tuple[str, str, Any]
 
 
 def bodies() -> Iterator[Named]:
-    """Yield moments of inertia with a density, radii of gyration, and the theorems on axes."""
+    """Yield moments of inertia with a density, radii of gyration, and the parallel- and perpendicular-axis theorems."""
     for name, shape in SHAPES.items():
         if shape.kind == "points":
             continue
@@ -68,7 +68,7 @@ def _rods_and_masses() -> Iterator[Named]:
 
 
 def _theorems() -> Iterator[Named]:
-    """Yield the parallel-axis theorem by components and for radii of gyration, and the theorem of flat bodies."""
+    """Yield the parallel-axis theorem, by components and for radii of gyration, and the theorem of flat bodies."""
     offset = symbols.offset
     added = Matrix(tensor.inertia_of_point(symbols.m, offset))
     (xx, yy, zz), (xy, xz, yz) = symbols.moments, symbols.products

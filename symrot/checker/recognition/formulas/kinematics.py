@@ -1,4 +1,4 @@
-"""Formulas of kinematics that books name: rotated vectors, points of a body, angles from matrices and quaternions.
+"""Formulas of kinematics in books: rotated vectors, points of a body, angles from matrices and quaternions.
 
 Each is derived from the rotation matrix, the quaternion or the rates of a chart. Angles are known by their sine, cosine
 or tangent: the name of such a formula ends with the inverse function, as in ``", 2 acos"``.
@@ -38,7 +38,7 @@ Named = tuple[str, str, Any]
 
 
 def vectors() -> Iterator[Named]:
-    """Yield rotated vectors, the motion of points of a body or in a rotating frame, and products with momenta."""
+    """Yield rotated vectors, motions of points in a body or rotating frame, and formulas with the angular momentum."""
     for name, matrix in _rotation_matrices():
         yield f"rotated vector, by {name}", UNIT, matrix * POSITION
         yield f"vector in rotated axes, by {name}", UNIT, matrix.T * POSITION
@@ -76,7 +76,7 @@ def vectors() -> Iterator[Named]:
 
 
 def _vector_parts() -> Iterator[Named]:
-    """Yield the vector parts of a product of quaternions and of the rate of a quaternion."""
+    """Yield the vector part of a quaternion product, and of the rate of a quaternion."""
     whole = Matrix(quaternion.quaternion_product(Q, symbols.second_quaternion))
     yield "vector part of the quaternion product q p", PARAMETERS, whole[1:, 0]
     for frame, omega in (("body", OMEGA), ("space", Matrix(symbols.omega_s))):
@@ -85,7 +85,7 @@ def _vector_parts() -> Iterator[Named]:
 
 
 def _rates_of_the_matrix() -> Iterator[Named]:
-    """Yield the rates of the rotation matrix and of its transpose, in their entries, from omega in both frames.
+    """Yield the rates of the rotation matrix and of its transpose, in terms of their entries and omega in either frame.
 
     They are proven for the matrix of a quaternion, whose rates are known.
     """
@@ -122,13 +122,13 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
 
 
 def _with_unit_axis(powers: Matrix) -> Matrix:
-    """Return a matrix in which n n^T - 1 replaces the square of the skew matrix of the unit axis n."""
+    """Return a rotation matrix in its form for a unit axis n: n n^T - 1 replaces the square of the skew matrix of n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (powers + excess * eye(3)).applyfunc(expand)
 
 
 def along_axes() -> Iterator[Named]:
-    """Yield angular velocities and momenta as sums along unit vectors, which are the columns of a matrix."""
+    """Yield angular velocities and momenta as sums of multiples of unit vectors, the columns of a matrix."""
     vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
     momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
     directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
@@ -151,7 +151,7 @@ def _as_scalar(column: Matrix) -> Any:
 
 
 def rotations() -> Iterator[Named]:
-    """Yield formulas for matrix entries, angles, quaternions and other parameters in terms of each other."""
+    """Yield formulas that convert between matrix entries, angles, quaternions and other parameters of rotations."""
     powers = Matrix(rotation_vector.dcm_of_axis_angle())
     yield "rotation matrix of a unit axis and an angle (Rodrigues' formula)", UNIT, _with_unit_axis(powers)
     yield from _entries()
@@ -161,7 +161,7 @@ def rotations() -> Iterator[Named]:
 
 
 def _entries() -> Iterator[Named]:
-    """Yield the entries of the matrix of a unit quaternion or axis, and the quaternion from the entries of a matrix."""
+    """Yield the matrix entries of a unit quaternion or axis, and the quaternion components from matrix entries."""
     of_axis = _with_unit_axis(Matrix(rotation_vector.dcm_of_axis_angle()))
     for i in range(3):
         for j in range(3):
@@ -224,7 +224,7 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
-    """Yield the components of a vector whose formulas are short: only their names tell what they are."""
+    """Yield the components of a vector; their formulas are too short to be recognised without their names."""
     for word, component in zip(WORDS, column, strict=True):
         yield f"{word} component of the {name}", source, component
 

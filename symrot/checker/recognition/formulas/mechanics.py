@@ -1,7 +1,7 @@
-"""Formulas of mechanics that books name: tops, wheels, free symmetric bodies, rotation about one axis.
+"""Formulas of mechanics in books: tops, wheels, free symmetric bodies, rotation about one axis.
 
-Each is derived from angular velocity in Euler angles, kinetic energy and Euler's equations; the symbols are those of
-:mod:`symrot.symbols`, and a weight on the axis is written as ``W c_3`` and as ``m g c_3``.
+Each is derived from angular velocity in Euler angles, kinetic energy and Euler's equations. The symbols are those of
+:mod:`symrot.symbols`; a weight on the axis is written as ``W c_3`` and as ``m g c_3``.
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ Named = tuple[str, str, Any]
 
 
 def tops() -> Iterator[Named]:
-    """Yield energies, momenta and rates of symmetric tops in the angles of ZXZ, heavy and free."""
+    """Yield energies, momenta and rates of heavy and free symmetric tops in the angles of ZXZ."""
     omega = (rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)).subs(PSI, 0)  # the spin angle changes no energy
     spin = omega[2]
     kinetic = HALF * omega.dot(diag(A, A, C) * omega)
@@ -104,7 +104,7 @@ def _free(omega: Matrix) -> Iterator[Named]:
 
 
 def one_axis() -> Iterator[Named]:
-    """Yield the formulas of rotation about one axis: products of few symbols, which only a name makes recognisable."""
+    """Yield the formulas of rotation about one axis. They are products of few symbols, which only a name identifies."""
     along, inertia = Matrix([0, 0, symbols.omega_3]), diag(A, symbols.B, C)
     momentum, rate = inertia * along, Matrix([0, 0, symbols.domega_3])
     yield "kinetic energy of rotation about one axis", TURNING, along.dot(momentum) / 2

@@ -1,0 +1,188 @@
+"""Read emitted JAX text: rewrite it as the C that means the same, and read that C; refuse all other Python.
+
+Kernels in JAX use few words: one function, the functions such as sinc that it calls, assignments, array elements,
+arithmetic, ``jnp.where`` and functions of ``jax.numpy``. With these words replaced, the text is C, and
+:mod:`symrot.certificates.readback.readback` reads its operations. Sizes of arrays come from the C function of the same
+kernel. The rules that JAX needs for derivatives are accepted word for word. This module shares no code with the
+emitter.
+"""
+
+import re
+
+from symrot.certificates.readback.c_functions import CFunction, functions_of
+from symrot.certificates.readback.operations import Operations
+from symrot.certificates.readback.readback import read_kernel
+from symrot.errors import CertificateError
+
+__all__ = ["compare_jax", "read_jax"]
+
+_HEAD = re.compile(r'"""(?:(?!""")[^\\])*"""\n\n(?:import jax\n)?import jax\.numpy as jnp\n', re.ASCII)
+_DEFINITION = re.compile(r"((?:@jax\.custom_jvp\n)?)def (\w+)\(([\w, ]*)\):\n", re.ASCII)
+_ASSIGNMENT = re.compile(r"    ([A-Za-z_]\w*) = (.+)", re.ASCII)
+_STACK = re.compile(r"    ([A-Za-z_]\w*) = jnp\.stack\(\[", re.ASCII)
+_ENTRY = re.compile(r"        (.+),", re.ASCII)
+_RETURN = re.compile(r"    return (.+)", re.ASCII)
+_CHOICE = re.compile(r"jnp\.where\((.*)\)", re.ASCII)
+_TOKEN = re.compile(r"\s+|\d[\w.]*(?:(?<=[eE])[+-]\d+)?|[A-Za-z_]\w*(?:\.[a-z]\w*)?|>=|<=|==|[-+*/()\[\],<>]", re.ASCII)
+_ARRAY_FUNCTIONS = {
+    f"jnp.{name}": name for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "copysign")
+} | {"jnp.abs": "fabs", "jnp.arcsin": "asin", "jnp.arccos": "acos", "jnp.arctan": "atan", "jnp.arctan2": "atan2"}
+_ONLY_IN_C = {"double", "float", "void", "static", "inline", "size_t", "const", "return", *_ARRAY_FUNCTIONS.values()}
+_NOT_IN_C = {"and", "or", "not", "if", "else", "in", "is", "lambda", "for", "jnp", "jax"}
+_SLOPES = {"sinc": "tangent_gap", "sine_gap": "sine_bend", "tangent_gap": "tangent_bend"}
+_RULES = {
+    name: f"@_{name}.defjvp\ndef _{name}_jvp(primals, tangents):\n    (x,), (dx,) = primals, tangents\n"
+    f"    return _{name}(x), -x*_{slope}(x)*dx\n"
+    for name, slope in _SLOPES.items()
+}
+"""The rules of derivatives: the slope of sinc(x) is -x*tangent_gap(x), and so on."""
+
+
+def read_jax(text: str, name: str, c_text: str, where: str = "kernel") -> Operations:
+    """Return the operations of a kernel in JAX.
+
+    Parameters
+    ----------
+    text : str
+        A Python module as symrot emits it.
+    name : str
+        Name of its function; the C function has the prefix ``symrot_``.
+    c_text : str
+        The C text of the same kernel, which gives the sizes of the arrays.
+    where : str
+        The file's name, for errors.
+
+    Raises
+    ------
+    CertificateError
+        For any Python that symrot does not emit.
+    """
+    model = functions_of(c_text, where).get(f"symrot_{name}")
+    if model is None:
+        raise CertificateError(f"{where}: expected C text with the function symrot_{name}")
+    return read_kernel(_as_c(text, name, model, where), f"symrot_{name}", where)
+
+
+def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:
+    """Raise CertificateError unless a kernel in JAX does the operations of the C function in double precision.
+
+    The operations are compared one by one: same constants, same functions, same order of rounding.
+    """
+    if read_jax(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
+        raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
+
+
+def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
+    """Return the C text that means the same as a JAX module."""
+    head = _HEAD.match(text)
+    if head is None:
+        raise CertificateError(f"{where}: expected a docstring and the import of jax.numpy, as symrot emits them")
+    functions, rules, needed = [], set[str](), set[str]()
+    for block in text[head.end() :].strip("\n").split("\n\n"):
+        block = block.strip("\n") + "\n"
+        rule = next((each for each, words in _RULES.items() if words == block), None)
+        if rule is not None:
+            rules.add(rule)
+            continue
+        definition = _DEFINITION.match(block)
+        if definition is None:
+            raise CertificateError(f"{where}: expected definitions of functions alone, got {block[:30]!r}")
+        mark, function, arguments = definition.groups()
+        lines, inputs = block[definition.end() :].splitlines(), arguments.split(", ") if arguments else []
+        if function == name:
+            functions.append(_kernel(lines, inputs, model, where))
+            continue
+        if mark:
+            needed.add(function.removeprefix("_"))
+        if not re.fullmatch("_[a-z][a-z_]*", function) or set(inputs) & (_ONLY_IN_C | _NOT_IN_C):
+            raise CertificateError(f"{where}: expected functions such as _sinc, got {function}({arguments})")
+        functions.append(_function(function, lines, inputs, where))
+    if rules != needed:
+        raise CertificateError(f"{where}: expected the rule of the derivative of each function with jax.custom_jvp")
+    return "\n".join(functions)
+
+
+def _function(name: str, lines: list[str], inputs: list[str], where: str) -> str:
+    """Return the C text of a function such as sinc: assignments, then a choice between two formulas."""
+    body = [_assignment(line, where) for line in lines[:-1]]
+    result = _RETURN.fullmatch(lines[-1] if lines else "")
+    choice = _CHOICE.fullmatch(result[1]) if result else None
+    parts = _split(choice[1]) if choice else []
+    if len(parts) != 3:
+        raise CertificateError(f"{where}: expected {name} to return jnp.where(condition, value, other)")
+    condition, value, other = (_translated(part, where) for part in parts)
+    arguments = ", ".join(f"double {each}" for each in inputs)
+    return "\n".join(
+        [f"static inline double {name}({arguments})", "{", *body, f"return {condition} ? {value} : {other};", "}"]
+    )
+
+
+def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -> str:
+    """Return the C text of the kernel; its arguments and results must be those of the C function."""
+    outputs = [p for p in model.parameters if p.size and not p.is_const]
+    expected = [p.name for p in model.parameters if p not in outputs]
+    if inputs != expected:
+        raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(inputs)}")
+    if not lines or lines[-1] != f"    return {', '.join(p.name for p in outputs)}":
+        raise CertificateError(f"{where}: expected the function to return {', '.join(p.name for p in outputs)}")
+    body, place = [], 0
+    while place < len(lines) - 1:
+        stack = _STACK.fullmatch(lines[place])
+        place += 1
+        if stack is None:
+            body.append(_assignment(lines[place - 1], where))
+            continue
+        index = 0
+        while (entry := _ENTRY.fullmatch(lines[place])) is not None:
+            if len(_split(entry[1])) != 1:
+                raise CertificateError(f"{where}: expected one formula in each line of {stack[1]}")
+            body.append(f"{stack[1]}[{index}] = {_translated(entry[1], where)};")
+            index, place = index + 1, place + 1
+        if lines[place] != "    ])":
+            raise CertificateError(f"{where}: expected the end of the array {stack[1]}, got {lines[place][:30]!r}")
+        place += 1
+    declared = [
+        f"{'const ' * (bool(p.size) and p.is_const)}double {p.name}" + (f"[{p.size}]" if p.size else "")
+        for p in model.parameters
+    ]
+    return "\n".join([f"void {model.name}({', '.join(declared)})", "{", *body, "}"])
+
+
+def _assignment(line: str, where: str) -> str:
+    """Return the C text of an assignment to a new variable."""
+    match = _ASSIGNMENT.fullmatch(line)
+    if match is None or match[1] in _ONLY_IN_C | _NOT_IN_C:
+        raise CertificateError(f"{where}: expected an assignment as symrot emits it, got {line[:40]!r}")
+    return f"const double {match[1]} = {_translated(match[2], where)};"
+
+
+def _split(text: str) -> list[str]:
+    """Split a text at the commas outside brackets, and return the parts."""
+    depth, parts = 0, [""]
+    for letter in text:
+        depth += (letter in "([") - (letter in ")]")
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+        if depth < 0:
+            return []
+    return parts
+
+
+def _translated(content: str, where: str) -> str:
+    """Return a formula with the words of C; refuse words that only C has."""
+    place, words = 0, []
+    while place < len(content):
+        match = _TOKEN.match(content, place)
+        if match is None or content[place : place + 2] in ("**", "//"):
+            raise CertificateError(f"{where}: expected JAX as symrot emits it, got {content[place : place + 20]!r}")
+        word, place = match[0], match.end()
+        if word in _ARRAY_FUNCTIONS:
+            word = _ARRAY_FUNCTIONS[word]
+        elif "." in word and not word[0].isdigit():
+            raise CertificateError(f"{where}: expected a function of jax.numpy that kernels use, got {word}")
+        elif word in _ONLY_IN_C or word in _NOT_IN_C or word.startswith("symrot_"):
+            raise CertificateError(f"{where}: expected JAX as symrot emits it, got the word {word}")
+        words.append(word)
+    return "".join(words)

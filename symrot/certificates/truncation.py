@@ -1,0 +1,400 @@
+"""Bounds of the truncation error of one time step on a box of states and step sizes, in interval arithmetic.
+
+Let x(h) be the exact motion and S(h) the exact formula of the step, both from the same start. For a method of order n
+the first n derivatives of ``x(h) - S(h)`` vanish at h = 0, so that by Taylor's theorem, for each component,
+
+    x(h) - S(h) = h^(n+1) (a - b),
+
+where a is a Taylor coefficient of the motion at a state between start and end, and b one of S at a size between 0 and
+h. Intervals contain both: first a box is found that the motion provably does not leave during the step (its rates on
+the box keep it inside); then the coefficients are computed on that box. The box of the start is divided where this
+makes the bound smaller.
+
+A Taylor step has order n by construction, and b = 0. For a Runge-Kutta method, the order conditions of all rooted trees
+with up to n nodes are checked exactly.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations_with_replacement
+from math import inf, nextafter, prod
+from typing import Any
+
+from mpmath import iv
+
+from symrot.codegen.steps import SIZE, Method, RungeKutta, TaylorSeries, stepped
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.errors import CertificateError, InputError
+from symrot.formula.program import Program
+
+__all__ = ["PIECES", "require_order", "truncation_bounds"]
+
+PIECES = 24
+"""Number of parts into which the box of the start is divided at most."""
+
+BITS = 64  # of the ends of intervals
+GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
+ATTEMPTS = 24
+
+Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omega_1" or "dt" -> least and largest value
+
+
+@contextmanager
+def _precision() -> Iterator[None]:
+    """Compute with intervals of ``BITS`` bits inside a ``with`` block."""
+    before, iv.prec = iv.prec, BITS
+    try:
+        yield
+    finally:
+        iv.prec = before
+
+
+def _number(value: Fraction) -> Any:
+    return iv.mpf(value.numerator) / value.denominator
+
+
+def _interval(low: Fraction, high: Fraction) -> Any:
+    return iv.mpf([_number(low).a, _number(high).b])
+
+
+def _undefined(name: str) -> Callable[..., Any]:
+    def refuse(*arguments: Any) -> Any:
+        raise InputError(
+            f"expected rates of + - * / and {', '.join(_SCALAR)}, whose truncation can be bounded, got {name}"
+        )
+
+    return refuse
+
+
+def _root(x: Any) -> Any:
+    if not x.a > 0:
+        raise ZeroDivisionError
+    return iv.sqrt(x)
+
+
+def _log(x: Any) -> Any:
+    if not x.a > 0:
+        raise ZeroDivisionError
+    return iv.log(x)
+
+
+_SCALAR: dict[str, Callable[[Any], Any]] = {
+    "sqrt": _root, "sin": iv.sin, "cos": iv.cos, "tan": lambda x: _over(iv.sin(x), iv.cos(x)), "exp": iv.exp,
+    "log": _log, "sinh": lambda x: (iv.exp(x) - iv.exp(-x)) / 2, "cosh": lambda x: (iv.exp(x) + iv.exp(-x)) / 2,
+    "tanh": lambda x: 1 - 2 / (iv.exp(2 * x) + 1), "atan": lambda x: iv.atan2(x, iv.mpf(1)),
+}  # fmt: skip
+
+
+def _over(above: Any, below: Any) -> Any:
+    if not isinstance(below, int) and 0 in below:
+        raise ZeroDivisionError
+    return above / below
+
+
+class _Functions(dict[str, Callable[..., Any]]):
+    """A map from names to functions of power series; a function that is not in it raises InputError when called."""
+
+    def __missing__(self, name: str) -> Callable[..., Any]:
+        return _undefined(name)
+
+
+@dataclass(frozen=True)
+class _Power:
+    """A power series in the size of the step, cut off after ``len(terms)`` terms; its coefficients are intervals."""
+
+    terms: tuple[Any, ...]
+
+    @staticmethod
+    def of(value: Any, count: int) -> "_Power":
+        return value if isinstance(value, _Power) else _Power((value, *(0,) * (count - 1)))
+
+    def __add__(self, other: Any) -> "_Power":
+        right = _Power.of(other, len(self.terms))
+        return _Power(tuple(a + b for a, b in zip(self.terms, right.terms, strict=True)))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> "_Power":
+        return _Power(tuple(-a for a in self.terms))
+
+    def __sub__(self, other: Any) -> "_Power":
+        return self + -_Power.of(other, len(self.terms))
+
+    def __rsub__(self, other: Any) -> "_Power":
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> "_Power":
+        a, b = self.terms, _Power.of(other, len(self.terms)).terms
+        return _Power(tuple(_dot(a[: n + 1], b[n::-1]) for n in range(len(a))))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "_Power":
+        a, b = self.terms, _Power.of(other, len(self.terms)).terms
+        quotient: list[Any] = []
+        for n in range(len(a)):
+            quotient.append(_over(a[n] - _dot(quotient, b[n:0:-1]), b[0]))
+        return _Power(tuple(quotient))
+
+    def __rtruediv__(self, other: Any) -> "_Power":
+        return _Power.of(other, len(self.terms)).__truediv__(self)
+
+    def __pow__(self, exponent: int) -> Any:
+        result: Any = 1
+        for _ in range(abs(exponent)):
+            result = self * result
+        return result if exponent >= 0 else 1 / result
+
+    def integrated(self, start: Any, slope: "_Power") -> "_Power":
+        """Return the function of this series with a value at 0 and a given derivative by its argument."""
+        count = len(self.terms)
+        rates = [(k + 1) * self.terms[k + 1] for k in range(count - 1)]
+        return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(count - 1))))
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    """Return the sum of products; exact zeros, which are integers, cost nothing."""
+    return sum((x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))), start=0)
+
+
+def _is_zero(value: Any) -> bool:
+    return isinstance(value, int) and value == 0
+
+
+def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
+    """Return sine and cosine, or hyperbolic sine and cosine, of a series.
+
+    Coefficient n + 1 of each is computed from the coefficients up to n of the other one.
+    """
+    count = len(x.terms)
+    s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
+    rates = [(k + 1) * x.terms[k + 1] for k in range(count - 1)]
+    for n in range(count - 1):
+        s.append(_dot(c[: n + 1], rates[n::-1]) / (n + 1))
+        c.append(sign * _dot(s[: n + 1], rates[n::-1]) / (n + 1))
+    return _Power(tuple(s)), _Power(tuple(c))
+
+
+def _exponential(x: _Power) -> _Power:
+    terms = [iv.exp(iv.mpf(x.terms[0]))]
+    rates = [(k + 1) * x.terms[k + 1] for k in range(len(x.terms) - 1)]
+    for n in range(len(x.terms) - 1):
+        terms.append(_dot(terms[: n + 1], rates[n::-1]) / (n + 1))
+    return _Power(tuple(terms))
+
+
+def _power_root(x: _Power) -> _Power:
+    terms = [_root(iv.mpf(x.terms[0]))]
+    for n in range(1, len(x.terms)):
+        terms.append((x.terms[n] - _dot(terms[1:], terms[:0:-1])) / (2 * terms[0]))
+    return _Power(tuple(terms))
+
+
+_OF_SERIES: dict[str, Callable[[_Power], _Power]] = {
+    "sqrt": _power_root,
+    "sin": lambda x: _turning(x, -1, ("sin", "cos"))[0],
+    "cos": lambda x: _turning(x, -1, ("sin", "cos"))[1],
+    "tan": lambda x: _OF_SERIES["sin"](x) / _OF_SERIES["cos"](x),
+    "exp": _exponential,
+    "log": lambda x: x.integrated(_log(iv.mpf(x.terms[0])), 1 / x),
+    "sinh": lambda x: _turning(x, 1, ("sinh", "cosh"))[0],
+    "cosh": lambda x: _turning(x, 1, ("sinh", "cosh"))[1],
+    "tanh": lambda x: _OF_SERIES["sinh"](x) / _OF_SERIES["cosh"](x),
+    "atan": lambda x: x.integrated(_SCALAR["atan"](iv.mpf(x.terms[0])), 1 / (1 + x * x)),
+}
+
+
+def _of_any(name: str) -> Callable[[Any], Any]:
+    def function(x: Any) -> Any:
+        return _OF_SERIES[name](x) if isinstance(x, _Power) else _SCALAR[name](iv.mpf(x))
+
+    return function
+
+
+# --- the order of a method --------------------------------------------------------------------------------------------
+
+Tree = tuple[Any, ...]  # a rooted tree: the subtrees of its root, in order
+
+
+def _trees(size: int) -> list[Tree]:
+    """Return all rooted trees with ``size`` nodes."""
+    if size == 1:
+        return [()]
+    trees: set[Tree] = set()
+    for count in range(1, size):
+        for sizes in combinations_with_replacement(range(1, size), count):
+            if sum(sizes) == size - 1:
+                groups: list[tuple[Tree, ...]] = [()]
+                for each in sizes:
+                    groups = [(*group, tree) for group in groups for tree in _trees(each)]
+                trees |= {tuple(sorted(group)) for group in groups}
+    return sorted(trees)
+
+
+def _size(tree: Tree) -> int:
+    return 1 + sum(map(_size, tree))
+
+
+def _density(tree: Tree) -> int:
+    return _size(tree) * prod(map(_density, tree))
+
+
+def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
+    """Return the elementary weight of a tree (the left side of its order condition) at each stage of a method."""
+    inner = [_weight(subtree, method) for subtree in tree]
+    return [
+        prod((sum((a * weights[j] for j, a in stage.items()), Fraction(0)) for weights in inner), start=Fraction(1))
+        for stage in method.stages
+    ]
+
+
+def require_order(method: Method) -> None:
+    """Raise CertificateError unless a method has the order that it states.
+
+    Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
+    """
+    if isinstance(method, TaylorSeries):
+        return
+    for node, stage in zip(method.nodes, method.stages, strict=True):
+        if sum(stage.values(), Fraction(0)) != node:
+            raise CertificateError(
+                f"{method.name}: expected each node to be the sum of the weights of its stage, got {node}"
+            )
+    for tree in (tree for size in range(1, method.order + 1) for tree in _trees(size)):
+        weights = _weight(tree, method)
+        total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
+        if total != Fraction(1, _density(tree)):
+            raise CertificateError(
+                f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
+                f"of a tree with {_size(tree)} nodes: {total} instead of 1/{_density(tree)}"
+            )
+
+
+# --- the bound --------------------------------------------------------------------------------------------------------
+
+
+def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, float]:
+    """Return, for each state, a bound of the difference between the exact motion and the exact formula of a step.
+
+    Parameters
+    ----------
+    rates : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    method : Method
+        The method of the step.
+    box : mapping
+        Ranges of t, dt, the states and the parameters, by name.
+
+    Raises
+    ------
+    InputError
+        If the steps are so large, or the box so wide, that no bound is found, or if the rates contain a function
+        without a rule.
+    CertificateError
+        If the method does not have its order.
+    """
+    require_order(method)
+    states = [name for name, *_ in rates.signature.argument("y").components]
+    problem = _Problem(rates, method, states)
+    with _precision():
+        parts = [(problem.bounds(box), dict(box))]
+        gains = _gains(problem, box, parts[0][0])
+        while gains and len(parts) < PIECES:
+            worst = max(parts, key=lambda part: max(part[0]))
+            width = {name: (worst[1][name][1] - worst[1][name][0]) / (box[name][1] - box[name][0]) for name in gains}
+            name = max(gains, key=lambda each: gains[each] * width[each])
+            halves = [(problem.bounds(half), half) for half in _halves(worst[1], name)]
+            if max(max(bounds) for bounds, _ in halves) >= max(worst[0]) < inf:
+                break
+            parts.remove(worst)
+            parts += halves
+        most = [max(bounds[i] for bounds, _ in parts) for i in range(len(states))]
+    if inf in most:
+        raise InputError(
+            f"{rates.signature.name}: expected steps so short that their truncation errors have a bound on the whole "
+            f"box, got sizes dt up to {float(max(map(abs, box[SIZE]))):g} s; take smaller dt or a smaller box"
+        )
+    return dict(zip(states, most, strict=True))
+
+
+def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]]]:
+    low, high = box[name]
+    middle = (low + high) / 2
+    for ends in ((low, middle), (middle, high)):
+        yield dict(box) | {name: ends}
+
+
+def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
+    """Return by which fraction halving the box in each input lowers the largest bound; omit inputs without a gain."""
+    gains = {}
+    for name, (low, high) in box.items():
+        if low < high:
+            halves = max(max(problem.bounds(half)) for half in _halves(box, name))
+            if halves < max(whole):
+                gains[name] = 1.0 if max(whole) == inf else 1 - halves / max(whole)
+    return gains
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """The rates, the method and the states of a step whose truncation is bounded."""
+
+    rates: Program
+    method: Method
+    states: Sequence[str]
+
+    def bounds(self, box: Box) -> list[float]:
+        """Return the bounds on one box, by state; all are infinite if no box contains the motions."""
+        values: dict[str, Any] = {name: _interval(*ends) for name, ends in box.items()}
+        low, high = box[SIZE]
+        span = _interval(min(low, Fraction(0)), max(high, Fraction(0)))  # all times from the start to the end
+        order = self.method.order
+        try:
+            during = self._enclosure(values, span)
+            if during is None:
+                return [inf] * len(self.states)
+            exact = coefficients(recurrences(self.rates), order + 1, during, _Functions(_SCALAR), _number)
+            ends = self._step_coefficients(values, span)
+            power = _number(max(abs(low), abs(high))) ** (order + 1)
+            return [_upper(abs(mine[order + 1] - own) * power) for mine, own in zip(exact, ends, strict=True)]
+        except ZeroDivisionError:
+            return [inf] * len(self.states)
+
+    def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
+        """Return ranges that no motion from the box leaves during the step; None if none are found.
+
+        If ``start + span f(ranges)`` lies in the ranges, every motion stays inside them (Picard and Lindelof).
+        """
+        around = dict(values) | {"t": values["t"] + span}
+        for _ in range(ATTEMPTS):
+            slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()
+            image = {name: values[name] + span * slope for name, slope in zip(self.states, slopes, strict=True)}
+            if all(image[name] in around[name] for name in self.states):
+                return dict(around) | image
+            for name in self.states:
+                low, high = min(image[name].a, around[name].a), max(image[name].b, around[name].b)
+                spare = (high - low) * _number(GROWTH)
+                around[name] = iv.mpf([(low - spare).a, (high + spare).b])
+        return None
+
+    def _step_coefficients(self, values: Mapping[str, Any], span: Any) -> list[Any]:
+        """Return the Taylor coefficient of order n + 1 of the step's formula, at all sizes of the span."""
+        if isinstance(self.method, TaylorSeries):
+            return [0] * len(self.states)
+        count = self.method.order + 2
+        size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
+        start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
+        functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
+        after = stepped(
+            self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
+        )  # fmt: skip
+        return [_Power.of(each, count).terms[count - 1] for each in after]
+
+
+def _upper(value: Any) -> float:
+    """Return a float that is not less than any number in an interval of nonnegative numbers."""
+    near = float(value.b)
+    return near if iv.mpf(near) >= value.b else nextafter(near, inf)

@@ -1,0 +1,107 @@
+"""Rules of differentiation, such as ``diff(x*y, q) == diff(x, q)*y + x*diff(y, q)``, whose letters are functions.
+
+SymPy syntax writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
+holds for all functions.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.reader import with_time
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.typed.cursor import TIME
+from symrot.exact import normal_form
+from symrot.exact.decision import flatten
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["as_functions", "is_rule"]
+
+
+def as_functions(claim: Claim) -> Claim | None:
+    """Return a claim in which letters become functions of the variable by which the text differentiates them; or None.
+
+    They become functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
+    this name. Return None for a claim with several variables, and for one that has both t and another variable.
+    """
+    assert claim.relation is not None
+    sign, *sides = claim.relation
+    nodes = [node for side in sides for _, node in walk(side)]
+    derivatives = [node for node in nodes if _is_derivative(node)]
+    variables = {argument for node in derivatives for argument in node.args[1:] if argument.kind != "number"}
+    names = {str(node.args[0].value) for node in derivatives if node.args[0].kind == "name"}
+    names -= {"t", "pi", *(str(variable.value) for variable in variables), *dict(claim.define)}
+    functions = {str(node.value) for node in nodes if node.args == (TIME,)}
+    moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
+    letters = [_letters(derivative.args[0]) for derivative in derivatives]
+    names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
+    if claim.hypotheses or len(variables) != 1 or not names:
+        return None
+    (variable,) = variables
+    if variable.kind != "name" or (variable != TIME and TIME in nodes):
+        return None
+    left, right = (with_time(_with_variable(side, str(variable.value)), names) for side in sides)
+    symbols = tuple(symbol for symbol in claim.symbols if symbol not in names)
+    others = (*claim.functions, *(name for name in claim.symbols if name in names))
+    notes = (*claim.notes, *_on_letters(names, derivatives, str(variable.value), dict(claim.define)))
+    return replace(claim, relation=(sign, left, right), symbols=symbols, functions=others, alternatives=(),
+                   sources={}, notes=notes)  # fmt: skip
+
+
+def _letters(tree: Node) -> set[str]:
+    """Return the names of the symbols and of the functions of time in a tree."""
+    return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
+
+
+def _on_letters(
+    names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
+) -> Iterator[str]:
+    """Yield the notes which say which letters in the derivatives are functions, and which are constants."""
+    yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
+    letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
+    if constants := sorted(letters - {*names, *defined, variable, "t", "pi"}):
+        yield f"{' and '.join(constants)} {'is a constant' if len(constants) == 1 else 'are constants'} here"
+
+
+def is_rule(claim: Claim) -> bool:
+    """Return whether a claim is a rule of differentiation: both sides have derivatives, one of them of a whole formula.
+
+    Moreover, one side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
+    so is ``diff(x, t) == diff(y, t)``.
+    """
+    assert claim.relation is not None
+    nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]
+    derivatives = [[node for node in side if _is_derivative(node)] for side in nodes]
+    sides = (claim.equation.left, claim.equation.right)
+    values = [[_plain(value) for value in flatten(side)[0]] for side in sides]
+    letters = [{letter for value in side for letter in value.atoms(Symbol, AppliedUndef)} for side in values]
+    has_all = letters[0] <= letters[1] or letters[1] <= letters[0]
+    return has_all and all(derivatives) and any(map(_is_of_formula, [*derivatives[0], *derivatives[1]]))
+
+
+def _plain(value: Expr) -> Expr:
+    """Return the normal form of a value, or the value itself if its normal form is too large."""
+    try:
+        return normal_form(value)
+    except TooLarge:
+        return value
+
+
+def _is_of_formula(derivative: Node) -> bool:
+    """Return whether a derivative is one of a sum, product or power that contains no further derivatives."""
+    inner = derivative.args[0]
+    return inner.kind in ("sum", "product", "power") and not any(_is_derivative(node) for _, node in walk(inner))
+
+
+def _is_derivative(node: Node) -> bool:
+    return node.kind == "call" and node.value == "diff"
+
+
+def _with_variable(node: Node, name: str) -> Node:
+    """Return a tree with t in place of ``name``, the variable of differentiation."""
+    if node.kind == "name" and node.value == name:
+        return TIME
+    return Node(node.kind, node.value, tuple(_with_variable(child, name) for child in node.args), node.span)

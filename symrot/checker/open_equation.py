@@ -1,0 +1,133 @@
+"""Equations for one letter, such as ``x² = 4`` and ``sin θ = 3/5``: true for some values of the letter only.
+
+Nobody writes such an equation as an identity, so that it is neither true nor false. The verdict is "definition", with
+the values for which the equation holds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from sympy import Expr, Poly, Symbol
+from sympy.polys.polyerrors import PolynomialError
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import is_name_or_rate, solution
+from symrot.checker.claim.notation import Notation
+from symrot.checker.claim.tree import Node, number, text, walk
+from symrot.checker.verdict import Diagnosis, Verdict
+from symrot.errors import InputError
+from symrot.exact.decide import decide
+from symrot.exact.printing import as_text
+
+__all__ = ["as_equation"]
+
+HIGHEST_DEGREE = 12
+"""The highest degree of a polynomial whose real roots are counted."""
+
+
+def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
+    """Return the verdict "definition" in place of "false" on an equation that restricts letters; others unchanged.
+
+    Such an equation has one letter, once or in the terms of a polynomial, and a real solution; or each of its sides is
+    a single letter. ``x² = -1``, which holds for no real x, stays false.
+    """
+    if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
+        return verdict
+    _, left, right = claim.relation
+    if all(map(is_name_or_rate, (left, right))) and left != right:
+        both = " and ".join(notation.formula(side) for side in (left, right))
+        reason = f"nothing here says what {both} are: it may be a condition, or another name for one quantity"
+        return _open(verdict, reason)
+    names = [node for side in (left, right) for _, node in walk(side) if is_name_or_rate(node) and node.value != "pi"]
+    if len({*names}) != 1 or len({str(name.value) for name in names}) != 1:
+        return verdict
+    letter = names[0]
+    values = _values(claim, letter, once=len(names) == 1)
+    if values is None:
+        return verdict
+    name = notation.formula(letter)
+    return _open(verdict, f"it is an equation for {name}, and no identity: it holds for {_in(notation, values)}")
+
+
+def _in(notation: Notation, values: str) -> str:
+    """Return values such as ``x == sqrt(2) and x == 3`` in a notation; words are unchanged."""
+    return notation.condition(values) if "==" in values else values
+
+
+def _open(verdict: Verdict, reason: str) -> Verdict:
+    return replace(
+        verdict, verdict="definition", reason=reason, counterexample=None, diagnosis=Diagnosis("none", ""), repairs=()
+    )
+
+
+def _values(claim: Claim, letter: Node, once: bool) -> str | None:
+    """Return a sentence on the values for which an equation for one letter holds; None if there are none, or all."""
+    left, right = claim.equation.left, claim.equation.right
+    symbol = claim.interpreter().read(letter)
+    if not all(isinstance(side, Expr) for side in (left, right)):
+        return None
+    if _is_polynomial(claim, letter):
+        return _roots(left - right, symbol, text(letter))
+    if not once:
+        return None
+    assert claim.relation is not None
+    side, other = claim.relation[1:]
+    if letter not in [node for _, node in walk(side)]:
+        side, other = other, side
+    solved = solution(side.args[0] if side.value == "abs" else side)
+    if solved is None:
+        return None
+    try:
+        value = claim.interpreter().read(solved[1](other))
+    except InputError:
+        return None
+    sides = [formula.xreplace({symbol: value}) for formula in (left, right)]
+    if value.is_real is not True or decide(*sides).verdict != "true":
+        return None
+    return f"{text(letter)} == {as_text(value)}"
+
+
+def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
+    """Return a sentence on the real roots of a polynomial with rational coefficients; None if it has none."""
+    try:
+        polynomial = Poly(difference, symbol, domain="QQ")
+    except PolynomialError:
+        return None
+    if not 0 < polynomial.degree() <= HIGHEST_DEGREE or not polynomial.count_roots():
+        return None
+    roots = list(dict.fromkeys(polynomial.real_roots()))
+    if polynomial.degree() > 2 and not all(root.is_Rational for root in roots):
+        return "one real value only" if len(roots) == 1 else f"{len(roots)} real values only"
+    return " and ".join(f"{name} == {as_text(root)}" for root in roots)
+
+
+def _is_polynomial(claim: Claim, letter: Node) -> bool:
+    """Return whether both sides are sums of different powers of a letter, and each power is on one side only.
+
+    ``(x + 1)^2 = x^2 + 1`` and ``2x = 3x`` are meant as identities; so may be ``x + 2x = 4x``.
+    """
+    assert claim.relation is not None
+    sides = [[] if side == number(0) else _exponents(side, letter) for side in claim.relation[1:]]
+    powers = [exponent for exponents in sides if exponents is not None for exponent in exponents]
+    return None not in sides and len({*powers}) == len(powers)
+
+
+def _exponents(side: Node, letter: Node) -> Sequence[Any] | None:
+    """Return the powers of a letter in the terms of a sum, 0 for a number; None for a sum with other terms."""
+    exponents = []
+    for term in side.args if side.kind == "sum" else (side,):
+        bare = term.args[0] if term.kind == "neg" else term
+        factors = bare.args if bare.kind == "product" else (bare,)
+        own = [factor for factor in factors if letter in [node for _, node in walk(factor)]]
+        if len(own) > 1:
+            return None
+        if not own:
+            exponents.append(0)
+        elif own[0] == letter:
+            exponents.append(1)
+        elif own[0].kind == "power" and own[0].args[0] == letter and own[0].args[1].kind == "number":
+            exponents.append(own[0].args[1].value)
+        else:
+            return None
+    return exponents

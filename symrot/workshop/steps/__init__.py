@@ -1,0 +1,1 @@
+"""Certificates of emitted time steps: made for a scene, and audited from their files."""

@@ -1,0 +1,178 @@
+"""The audit of a step's certificate: every statement about the files in its folder is proven again."""
+
+import json
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from hashlib import sha256
+from pathlib import Path
+
+from symrot.certificates.audit import LARGEST
+from symrot.certificates.certificate import Data, certificate_json, seal
+from symrot.certificates.readback.header import check_header
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding.bounds import check_section
+from symrot.certificates.step_certificate import (
+    NOT_STATED,
+    SCHEMA,
+    TRUSTED,
+    bounds_of_step,
+    formula_section,
+    is_step,
+    rates_of,
+)
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
+from symrot.codegen.steps import Method
+from symrot.errors import CertificateError, InputError
+from symrot.files.reading import read_input
+from symrot.scene.file import shipped_names
+from symrot.workshop.step_text import ORDER, step_method, step_text
+
+__all__ = ["audit_step", "step_data"]
+
+SECTIONS = (
+    "schema", "kernel", "title", "regenerate", "method", "step", "rates", "files", "formula", "bounds", "trusted",
+    "seal",
+)  # fmt: skip
+
+
+def step_data(path: Path) -> Data | None:
+    """Return the content of a file if it is the certificate of a step, else None."""
+    try:
+        data = json.loads(read_input(path, LARGEST))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return data if is_step(data) else None
+
+
+def audit_step(
+    path: Path, data: Data, rerun: bool = False, progress: Callable[[str], object] = lambda text: None
+) -> list[str]:
+    """Audit the certificate of a step; return the statements that were checked and hold, one line each.
+
+    Files, C text and bounds are compared with the rates that the certificate states; for a shipped scene these must be
+    the rates that symrot derives.
+
+    Parameters
+    ----------
+    path : Path
+        NAME.cert.json, in the folder with the files that it names.
+    data : mapping
+        Its content, from :func:`step_data`.
+    rerun : bool
+        Whether to search for the bounds of rounding errors again; bounds of truncation are always computed again.
+
+    Raises
+    ------
+    CertificateError
+        If a statement does not hold; the message names the first such statement.
+    """
+    name = str(data.get("kernel"))
+    if data.get("schema") != SCHEMA:
+        raise CertificateError(f"{path}: expected the schema {SCHEMA}, got {data.get('schema')}; emit the step again")
+    missing = [each for each in SECTIONS if each not in data and each != "bounds"]
+    unknown = sorted(set(data) - set(SECTIONS))
+    if missing or unknown:
+        raise CertificateError(f"{path}: expected the sections of a step's certificate, got "
+                               f"{'none ' if missing else ''}{(missing or unknown)[0]!r}")  # fmt: skip
+    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) or path.name != f"{name}.cert.json":
+        raise CertificateError(f"{path}: expected the certificate of {path.name.removesuffix('.cert.json')}, "
+                               f"got that of {name[:60]}")  # fmt: skip
+    if data["seal"] != seal(data) or path.read_text(encoding="utf-8") != certificate_json(data):
+        raise CertificateError(f"{path}: expected a certificate as symrot prints it, got one that was edited")
+    if data["trusted"] != (TRUSTED if "bounds" in data else TRUSTED | NOT_STATED):
+        raise CertificateError(f"{path}: expected the assumptions that symrot states, got others")
+    try:
+        texts = _files(path, name, data)
+    except (KeyError, TypeError, ValueError, OverflowError) as reason:
+        raise CertificateError(f"{path}: expected files and parameters as symrot prints them ({reason})") from None
+    source = texts[f"{name}.c"]
+    check_header(texts[f"{name}.h"], source, name)
+    method, rates = _method(path, data), rates_of(data)
+    progress("proving ..")
+    if formula_section(name, rates, method, source) != data["formula"]:
+        raise CertificateError(f"{path}: expected the proof of the C text that symrot computes now, got another one")
+    report = [f"{name}: {len(texts)} hashes, C text of symrot_{name} and symrot_{name}f and batches = {method.formula}"]
+    report.append(_of_scene(path, data, method))
+    if "bounds" in data:
+        progress("bounding ..")
+        report.append(_bounds(path, data, method, source, rerun))
+    else:
+        report.append("no bounds of rounding and truncation")
+    return report
+
+
+def _files(path: Path, name: str, data: Data) -> dict[str, str]:
+    """Return the files of a step, whose hashes are those of the certificate."""
+    expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
+    parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
+    expected |= {parameters_file(name)} if parameters else set()
+    if not isinstance(data["files"], dict) or set(data["files"]) != expected:
+        raise CertificateError(f"{path}: expected the hashes of {', '.join(sorted(expected))}, got others")
+    texts = {}
+    for file, digest in data["files"].items():
+        try:
+            content = read_input(path.parent / file, LARGEST)
+        except OSError:
+            raise CertificateError(f"{path}: expected its file {file} in the same folder, got none") from None
+        if sha256(content).hexdigest() != digest:
+            raise CertificateError(f"{path.parent / file}: expected the file of the certificate, got an edited one")
+        texts[file] = content.decode("utf-8", "replace")
+    values = [(symbol, float.fromhex(value)) for symbol, value in parameters]
+    if values and texts[parameters_file(name)] != parameters_header(name, values):
+        raise CertificateError(
+            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states"
+        )
+    return texts
+
+
+def _method(path: Path, data: Data) -> Method:
+    step = data["step"]
+    try:
+        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None)
+    except (InputError, KeyError, TypeError) as reason:
+        raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
+    if step["order"] != method.order or data["method"] != method.formula:
+        raise CertificateError(f"{path}: expected the order {method.order} of {method.name}, got {step['order']}")
+    return method
+
+
+def _of_scene(path: Path, data: Data, method: Method) -> str:
+    """Compare the certificate with that of a shipped scene; return a sentence."""
+    match = re.fullmatch(r"symrot emit (\S+) --step \w+(?: --order \d+)? --target c", str(data["regenerate"]))
+    scene = match[1] if match else ""
+    if scene not in shipped_names():
+        return "the rates are only those that the certificate states, because symrot has no scene of that name"
+    order = method.order if method.name == "taylor" and method.order != ORDER else None
+    own = json.loads(step_text(scene, method.name, order).certificate())
+    for section in SECTIONS:
+        if section not in ("bounds", "trusted", "seal") and own[section] != data[section]:
+            raise CertificateError(
+                f"{path}: expected {section!r} as symrot prints it for the scene {scene}, got other content"
+            )
+    return f"rates, parameters and files are those that symrot derives for the scene {scene}"
+
+
+def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
+    """Compute the bounds of a certificate again; return a sentence."""
+    name, rates = data["kernel"], rates_of(data)
+    try:
+        section = data["bounds"]["rounding"]
+        operations = read_kernel(source, f"symrot_{name}", f"{name}.c")
+        box = {
+            place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
+            for place, (low, high) in section["box"].items()
+        }
+        check_section(section, operations, None, rerun)
+        for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
+            low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))
+            if f"p[{index}]" in box and not low <= Fraction(float.fromhex(value)) <= high:
+                raise CertificateError(f"{path}: expected a box with the value of {symbol}, got one without it")
+        own = bounds_of_step(operations, rates, method, box)
+    except InputError as reason:
+        raise CertificateError(f"{path}: {reason}") from None
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as reason:
+        raise CertificateError(f"{path}: expected bounds as symrot prints them, got others ({reason})") from None
+    if json.dumps(own, sort_keys=True) != json.dumps(data["bounds"], sort_keys=True):
+        raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
+    return "bounds of rounding and truncation were computed again and agree"

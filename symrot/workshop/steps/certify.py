@@ -1,0 +1,127 @@
+"""The certificate of a step of a scene, with bounds of its errors, for `symrot certify SCENE --step METHOD`."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from symrot.certificates.certificate import Data, certificate_json
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding.library import RoundingProblem
+from symrot.certificates.rounding.region import EVERYWHERE
+from symrot.certificates.rounding.scenes import scene_problem
+from symrot.certificates.step_certificate import bounds_of_step, rates_of, with_bounds
+from symrot.codegen.steps import step_signature
+from symrot.errors import InputError
+from symrot.workshop.input_ranges import input_box
+from symrot.workshop.kernel_files import write_files
+from symrot.workshop.step_text import StepText, step_text
+
+__all__ = ["certify_step", "lines", "proofs"]
+
+
+def certify_step(
+    scene: str, step: str, order: int | None = None, ranges: Sequence[str] = (), directory: Path | None = None,
+    progress: Callable[[str], object] = lambda text: None,
+) -> tuple[Data, list[Path]]:  # fmt: skip
+    """Return the certificate of a step of a scene, and the paths of the written files.
+
+    Parameters
+    ----------
+    scene : str
+        The name of a shipped scene or the path of a scene file.
+    step, order
+        As for :func:`symrot.emit`.
+    ranges : sequence of str
+        ``NAME=LOW:HIGH``: the box on which the errors of one step are bounded. NAME is a state, dt, t or a physical
+        constant. Without ranges, the certificate has no bounds.
+    directory : Path, optional
+        Folder for the step and its certificate; without it no file is written.
+
+    Raises
+    ------
+    InputError
+        For a step that cannot be emitted, an incomplete box, or a box on which an error has no bound.
+    CertificateError
+        If the C text does not compute the method.
+    """
+    printed = step_text(scene, step, order)
+    if ranges and step == "dop853":
+        raise InputError(
+            "step: expected rk4 or taylor for bounds on a box, got dop853, whose coefficients are rounded; without a "
+            "box, its formula is certified"
+        )
+    progress("proving ..")
+    text = printed.certificate()
+    if ranges:
+        progress("bounding ..")
+        data = json.loads(text)
+        text = certificate_json(with_bounds(data, _bounds(printed, data, ranges)))
+    texts = printed.c_files() | {f"{printed.name}.cert.json": text}
+    return json.loads(text), write_files(directory, texts) if directory else []
+
+
+def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
+    """Return the section ``bounds``, for the rates as the certificate states them."""
+    rates, name = rates_of(data), f"symrot_{step.name}"
+    operations = replace(read_kernel(step.c()[0], name, f"{step.name}.c"), name=step.name)
+    inputs = replace(step.rates.inputs, arguments=step_signature(rates, step.name).arguments)
+    known = scene_problem(inputs, operations)
+    problem = RoundingProblem(known.box, EVERYWHERE, known.symbols)
+    box = input_box(problem, inputs, ranges)
+    lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in problem.symbols.items() if place not in box]
+    if lacking:
+        raise InputError(
+            f"{step.name}: expected {' '.join(lacking)} in addition to the ranges that the scene knows, "
+            f"got {' '.join(ranges)[:60]}"
+        )
+    return bounds_of_step(operations, rates, step.method, {place: box[place] for place in operations.inputs})
+
+
+def proofs(data: Data) -> tuple[str, ...]:
+    """Return the kinds of proof in the certificate of a step."""
+    return ("C text", "rounding", "truncation") if "bounds" in data else ("C text",)
+
+
+def lines(data: Data) -> list[str]:
+    """Return lines of text about the certificate of a step."""
+    rows = [("method", data["method"])]
+    for name, function in data["formula"].items():
+        count = sum(function["operations"].values())
+        rows.append(
+            (
+                "C text",
+                f"{name} and its batch are the method, {count} operations (equal at {function['points']} "
+                f"random points; otherwise with a probability below {function['wrong_with_probability_below']})",
+            )
+        )
+    if "bounds" in data:
+        rows += _bound_rows(data["bounds"], [name for name, _ in data["rates"]["states"]])
+    else:
+        rows.append(("errors", "not bounded; --box omega_1=-1:1 .. --box dt=0:0.01 bounds rounding and truncation"))
+    width = max(len(label) for label, _ in rows) + 2
+    return [f"{data['kernel']}: {data['title']}", *(f"  {label:<{width}}{text}" for label, text in rows)]
+
+
+def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[str, str]]:
+    rounding = {
+        state: float.fromhex(output["absolute"])
+        for state, output in zip(states, bounds["rounding"]["precisions"][0]["outputs"], strict=True)
+    }
+    truncation = {state: float.fromhex(value) for state, value in bounds["truncation"].items()}
+    return [
+        (label, f"at most {_up(errors[worst])} in one step on the box, in double precision ({worst})")
+        for label, errors in (("rounding", rounding), ("truncation", truncation))
+        for worst in (max(errors, key=errors.__getitem__),)
+    ]
+
+
+def _up(value: float) -> str:
+    """Return a positive number with two digits that is not less."""
+    text = f"{value:.1e}"
+    if Fraction(text) >= Fraction(value):
+        return text
+    mantissa, exponent = text.split("e")
+    return f"{float(mantissa) + 0.1:.1f}e{exponent}"

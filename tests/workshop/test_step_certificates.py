@@ -1,0 +1,194 @@
+"""Certificates of steps: bounds of rounding and truncation hold, wrong steps and edited certificates are refused."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+import symrot
+from symrot.certificates import truncation
+from symrot.certificates.certificate import certificate_json, seal
+from symrot.certificates.step_certificate import rates_of
+from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
+from symrot.codegen.steps import RK4, TaylorSeries, stepped
+from symrot.errors import CertificateError, InputError
+from symrot.formula.tree import FUNCTIONS
+from symrot.workshop.step_text import step_text
+
+BOX = {"omega_1": (-1, 1), "omega_2": (-1, 1), "omega_3": (-1, 1), "dt": (0, "1/100")}
+QUATERNION = {f"q{i}": (Fraction(-1), Fraction(1)) for i in range(4)}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _few_pieces():
+    """Divide boxes into few parts: the bounds are larger, and the tests shorter."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(truncation, "PIECES", 3)
+        yield
+
+
+def problem(scene, step, sizes):
+    """Return rates, method, parameters by name and the box of the step of a scene; states are in [-1, 1]."""
+    text = step_text(scene, step)
+    rates, method = text._rates_program, text.method
+    states = [name for name, *_ in rates.signature.argument("y").components]
+    parameters = dict(zip(text._parameter_names, map(Fraction, text.rates.inputs.parameters), strict=True))
+    box = {name: (Fraction(-1), Fraction(1)) for name in states} | {"t": (Fraction(0), Fraction(1)), "dt": sizes}
+    return rates, method, parameters, box | {name: (value, value) for name, value in parameters.items()}
+
+
+def errors(rates, method, parameters, box, samples):
+    """Return the largest |step - exact motion| of each state at random starts, with 40 digits."""
+    draw, worst = np.random.default_rng(5), None
+    functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in FUNCTIONS}
+    states = [name for name, *_ in rates.signature.argument("y").components]
+    with mpmath.workdps(40):
+
+        def number(value):
+            return mpmath.mpf(value.numerator) / value.denominator
+
+        for _ in range(samples):
+            values = {name: mpmath.mpf(draw.choice([-1, 1]) * draw.uniform(0.8, 1)) for name in states}
+            values |= {name: number(value) for name, value in parameters.items()} | {"t": mpmath.mpf(draw.uniform())}
+            dt = number(box["dt"][1])
+            ours, exact = (stepped(rates, each, values, dt, functions, number) for each in (method, TaylorSeries(16)))
+            here = [abs(a - b) for a, b in zip(ours, exact, strict=True)]
+            worst = here if worst is None else list(map(max, worst, here))
+    return list(map(float, worst))
+
+
+@pytest.mark.parametrize(("scene", "step", "size", "wide"), [
+    ("tumbling_prism", "rk4", Fraction(1, 100), 200), ("tumbling_prism", "taylor", Fraction(1, 10), 800),
+    ("damped_disk", "rk4", Fraction(-1, 100), 400),
+])  # fmt: skip
+def test_bounds_of_truncation_hold_and_are_not_much_too_large(scene, step, size, wide):
+    """Few parts and few starts leave a factor of some hundreds; a wrong power of dt would leave more, or less than 1."""
+    rates, method, parameters, box = problem(scene, step, (min(size, Fraction(0)), max(size, Fraction(0))))
+    box["dt"] = tuple(sorted((Fraction(0), size)))
+    bounds = truncation_bounds(rates, method, box)
+    measured = errors(rates, method, parameters, box | {"dt": (Fraction(0), size)}, 4)
+    for bound, error in zip(bounds.values(), measured, strict=True):
+        assert error <= bound
+    assert max(bounds.values()) < wide * max(measured)
+
+
+def test_a_wrong_step_is_refuted():
+    """With one wrong weight the method loses its order, is refused, and errs by more than the bound of the right one."""
+    wrong = replace(RK4, weights={0: Fraction(1, 6), 1: Fraction(1, 3), 2: Fraction(1, 6), 3: Fraction(1, 3)})
+    rates, method, parameters, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 100)))
+    with pytest.raises(CertificateError, match="expected a method of order 4"):
+        truncation_bounds(rates, wrong, box)
+    assert max(errors(rates, wrong, parameters, box, 3)) > max(truncation_bounds(rates, method, box).values())
+
+
+def test_order_conditions_of_all_trees():
+    """There are 1, 1, 2, 4, 9 and 20 rooted trees of 1 to 6 nodes; RK4 fulfils those up to 4 and no more."""
+    assert [len(_trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
+    require_order(RK4)
+    with pytest.raises(CertificateError, match="a tree with 5 nodes"):
+        require_order(replace(RK4, order=5))
+
+
+@pytest.mark.parametrize("name", _OF_SERIES)
+def test_series_of_functions_contain_their_derivatives(name):
+    """The series of f(a + b h + c h^2) contains the Taylor coefficients of the composed function."""
+    with mpmath.workdps(40):
+        a, b, c = (mpmath.mpf(value) / 8 for value in (5, -3, 7))
+        exact = mpmath.taylor(lambda h: getattr(mpmath, name)(a + b * h + c * h * h), 0, 5)
+    series = _OF_SERIES[name](_Power((*(_number(Fraction(value, 8)) for value in (5, -3, 7)), 0, 0, 0)))
+    for interval, value in zip(series.terms, exact, strict=True):
+        assert float(interval.a) - 1e-12 <= float(value) <= float(interval.b) + 1e-12
+        assert float(interval.delta) < 1e-10
+
+
+def test_steps_too_large_for_a_bound_are_refused():
+    rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(10)))
+    with pytest.raises(InputError, match="got sizes dt up to 10 s; take smaller dt"):
+        truncation_bounds(rates, method, box)
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    """Return the folder and the certificate of a step of order 3, with bounds."""
+    folder = tmp_path_factory.mktemp("step")
+    return folder, symrot.certify("tumbling_prism", BOX, directory=folder, step="taylor", order=3)
+
+
+def test_a_certificate_bounds_the_errors_of_one_step(certified):
+    folder, certificate = certified
+    assert certificate.proofs == ("C text", "rounding", "truncation")
+    assert "truncation  at most" in str(certificate)
+    (path,) = folder.glob("*.cert.json")
+    statements = symrot.audit(path).statements[str(path)]
+    assert "rates, parameters and files are those that symrot derives for the scene tumbling_prism" in statements
+    assert "bounds of rounding and truncation were computed again and agree" in statements
+
+
+def forged(certified, folder, change):
+    """Write the certified step with a changed certificate, whose seal is right, and return its path."""
+    source, certificate = certified
+    for path in source.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    data = json.loads(json.dumps(certificate.data))
+    change(data, folder)
+    data["seal"] = seal(data)
+    path = folder / f"{data['kernel']}.cert.json"
+    path.write_text(certificate_json(data), encoding="utf-8")
+    return path
+
+
+def _smaller_truncation(data, folder):
+    data["bounds"]["truncation"]["q0"] = (float.fromhex(data["bounds"]["truncation"]["q0"]) / 2).hex()
+
+
+def _smaller_rounding(data, folder):
+    output = data["bounds"]["rounding"]["precisions"][0]["outputs"][0]
+    output["absolute"] = (float.fromhex(output["absolute"]) * 0.9).hex()
+
+
+def _other_rates(data, folder):
+    data["rates"]["formulas"][0][1] = data["rates"]["formulas"][1][1]
+
+
+def _other_order(data, folder):
+    data["step"]["order"] = 4
+
+
+def _other_text(data, folder):
+    path = folder / f"{data['kernel']}.c"
+    path.write_text(path.read_text("utf-8").replace("0.5*", "0.25*"), encoding="utf-8")
+
+
+def _other_parameter(data, folder):
+    data["rates"]["parameters"][0][2] = (1.0).hex()
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
+    (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
+    (_other_parameter, "the parameters that the certificate states"),
+])  # fmt: skip
+def test_forged_certificates_are_refused(certified, tmp_path, change, message):
+    with pytest.raises(CertificateError, match=message):
+        symrot.audit(forged(certified, tmp_path, change))
+
+
+def test_the_rates_in_a_certificate_are_those_of_the_scene():
+    """Text and parser return the same trees, also for fractions."""
+    text = step_text("gravity_gradient_satellite", "rk4")
+    stated = rates_of(json.loads(text.certificate()))
+    assert (stated.temporaries, stated.outputs) == (text._rates_program.temporaries, text._rates_program.outputs)
+
+
+@pytest.mark.parametrize(("options", "message"), [
+    ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
+    ({"step": "dop853", "box": BOX}, "expected rk4 or taylor for bounds on a box"),
+    ({"step": "rk4", "objects": True}, "without objects"), ({"order": 3}, "expected a step as well"),
+    ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
+])  # fmt: skip
+def test_impossible_requests_are_one_sentence(options, message):
+    with pytest.raises(InputError, match=message):
+        symrot.certify("tumbling_prism", **options)
