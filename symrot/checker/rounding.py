@@ -117,6 +117,4 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Nod
     witness = decision.counterexample
     if witness is not None and side is claim.relation[1]:  # type: ignore[index]
         witness = replace(witness, left=witness.right, right=witness.left)
-    return replace(
-        verdict, counterexample=witness or verdict.counterexample, diagnosis=diagnosis, repairs=(repair,)
-    )
+    return replace(verdict, counterexample=witness or verdict.counterexample, diagnosis=diagnosis, repairs=(repair,))
