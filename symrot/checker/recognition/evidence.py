@@ -7,7 +7,8 @@ from itertools import pairwise
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.context.admission import COMPONENTS, admits_letters, admits_name
+from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
+from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.identification import plain_name, unit_of
 from symrot.checker.recognition.nearby import Near
@@ -241,10 +242,24 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
-    if not has_word(known.name, words) or not keeps_places(named, known):
+    if not has_word(known.name, words) or not keeps_places(named, known) or _is_of_other_angles(named, known):
         return False
     units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
     return all(own is None or other is None or own == other for own, other in units)
+
+
+def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
+    """Return whether a formula for an aircraft's rate p, q or r has an angle that is no roll, pitch or yaw."""
+    sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
+    if named.name not in RATES_OF_AIRCRAFT or sequence is None:
+        return False
+    if "space frame" in known.name:
+        return True
+    old_names = {plain_name(new).removeprefix("d"): old.removeprefix("d") for old, new in known.mapping.items()}
+    letters = {name.removeprefix("d") for name in names_in(named.formula)} & {*ANGLES}
+    places = {letter: ANGLES.index(old_names.get(letter, letter)) for letter in letters
+              if old_names.get(letter, letter) in ANGLES}  # fmt: skip
+    return not are_roll_pitch_yaw(sequence[1], places)
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
