@@ -12,12 +12,14 @@ import pytest
 from sympy import Matrix, MatrixBase, Poly, Rational, Symbol
 
 from symrot import catalogue
+from symrot.catalogue.angular_velocity import euler_body_rates
 from symrot.catalogue.tools.power_series import coefficient, indexed
 from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.page import Table
 from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
 
@@ -120,8 +122,23 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
 
 
 def test_every_sequence_has_its_rates(derived):
-    titles = [item.title for item in derived["euler_body_rates"].items if hasattr(item, "title")]
-    assert [title.split(",")[0] for title in titles] == list(SEQUENCES)
+    tables = [item for item in derived["euler_body_rates"].items if isinstance(item, Table)]
+    names = [cells[0] for table in tables for cells, steps in table.rows if len(steps) == 4]
+    assert sorted([euler_body_rates.EXAMPLE, *names]) == sorted(SEQUENCES)
+
+
+def test_a_table_numbers_the_steps_that_prove_its_rows(derived):
+    """Each number of a step stands once on the page, and one step of a row can be printed by its number."""
+    page = derived["euler_singularities"]
+    numbers = [int(number) for number in re.findall(r"^\*\*(\d+)\.\*\*", page.markdown(), re.MULTILINE)]
+    for first, last in re.findall(r"^\| (\d+)–(\d+) \|", page.markdown(), re.MULTILINE):
+        numbers += range(int(first), int(last) + 1)
+    assert numbers == list(range(1, len(page.steps) + 1))
+    assert page.part(40).steps == (page.steps[39],)
+
+
+def test_the_euler_pages_argue_once(derived):
+    assert sum(derived[name].markdown().count("\n") for name in ("euler_body_rates", "euler_singularities")) < 400
 
 
 def test_the_coefficient_of_a_power_is_that_of_the_product():
