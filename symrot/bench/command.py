@@ -118,6 +118,7 @@ STUDIES: dict[str, str] = {
     "long": "1e6 revolutions by stepping: energy, attitude and time",
     "start": "`symrot run` from a cold and from a warm start",
     "derive": "how long deriving takes",
+    "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
 }
 """Studies of a single question: the name of a module in :mod:`symrot.bench` -> the question."""
 

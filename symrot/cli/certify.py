@@ -107,7 +107,7 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds need, so that contraction (a*b + c rounded once) is accepted",
+        help="test only what the error bounds need: they allow that a*b + c is rounded only once",
     )
     json_option(parser)
 

@@ -67,7 +67,7 @@ def _inertia_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--mass", metavar="X", help="mass of a mesh, kg")
     parser.add_argument("--density", metavar="X", help="density of a mesh, kg/m^3: a number or a polynomial in x, y, z")
-    parser.add_argument("--scale", metavar="X", help="length of the unit of a mesh, m: 1/1000 for mm (default: 1)")
+    parser.add_argument("--scale", metavar="X", help="unit of length of a mesh in m: 1/1000 for mm (default: 1)")
     parser.add_argument("--flip", action="store_true", help="reverse the triangles of a mesh that is turned inside out")
     parser.add_argument("--toml", action="store_true", help="print the table [body] of a scene")
     json_option(parser)

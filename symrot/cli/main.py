@@ -172,7 +172,7 @@ def _write_partial(error: BaseException, propagator: Any, options: Namespace) ->
     from symrot.report import output
 
     output.save(part, options.out)
-    return f"; {options.out} contains the {len(part)} samples before"
+    return f"; {options.out} contains the {len(part)} samples before that time"
 
 
 def _explain(options: Namespace) -> int:
@@ -408,14 +408,14 @@ def _emit_arguments(parser: ArgumentParser) -> None:
         help="compare the files on disk with new ones; exit 1 with a diff if they differ",
     )
     parser.add_argument(
-        "--target", choices=TARGETS, help="language (default: c for a kernel, all for --all and --check)"
+        "--target", choices=TARGETS, help="language to emit (default: c for a kernel, all for --all and --check)"
     )
     parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
                         "such as omega,q, or by constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
     parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
-    parser.add_argument("--cmake", action="store_true", help="with -o: also write the files by which CMake and "
-                        "pkg-config take kernels of this folder by name")  # fmt: skip
+    parser.add_argument("--cmake", action="store_true", help="with -o: also write the files with which CMake "
+                        "and pkg-config find the kernels in this folder")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder to write to, or to compare with --check (default: standard output for a kernel, "
                         "otherwise ./generated)")  # fmt: skip

@@ -13,7 +13,7 @@ def scene_options(parser: ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings", help=SET_HELP)
     parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
-                        help="allow files of samples in this folder too; may be repeated "
+                        help="let the scene read files of samples in this folder too; may be repeated "
                         "(default: only the scene's own folder)")  # fmt: skip
 
 

@@ -157,7 +157,7 @@ LAWS: dict[str, Callable[..., TorqueLaw]] = {
     "expression": _expression,
 }
 if LAWS.keys() != TORQUE_KINDS.keys():
-    raise AssertionError(f"expected one law per torque kind, differing: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
+    raise AssertionError(f"expected a law for each kind of torque, got none for {LAWS.keys() ^ TORQUE_KINDS.keys()}")
 
 
 _FUNCTIONS: dict[str, Callable[..., Expr]] = {

@@ -372,9 +372,9 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
-        """Return the motion from another initial state, for which the equations have the same form.
+        """Return the motion from another initial state; nothing is derived or compiled again.
 
-        Nothing is derived or compiled again.
+        The equations of motion must have the same form as for the first initial state.
         """
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 

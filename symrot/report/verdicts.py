@@ -66,9 +66,14 @@ def _units(words: Sequence[str]) -> dict[str, str]:
     return {name.strip(): unit for name, _, unit in pairs}
 
 
+SIGNS = "=≈≃≤≥⩽⩾<>≠"
+"""The signs of relations. Every claim as text has one of them, or a backslash if it is LaTeX."""
+
+
 def _is_file(source: str) -> bool:
-    """Return whether the argument of `symrot check` names a file instead of stating a claim, which contains ``=``."""
-    return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
+    """Return whether the argument of `symrot check` names a file instead of stating a claim, which has a sign."""
+    is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
+    return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:

@@ -174,7 +174,7 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected two studies with a common method and a common decade of the error, got none in common"
+            "--compare: expected studies with a common method at a common power of ten of the error, got none in common"
         )
     return {
         "format": "symrot comparison 1",

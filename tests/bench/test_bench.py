@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import command, kernels, skip, steps
+from symrot.bench import check, command, kernels, skip, steps
 from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
 from symrot.bench.comparison import reference as reference_module
 from symrot.bench.comparison import suite
@@ -562,3 +562,9 @@ def test_steps_of_other_tools_are_left_out_where_they_are_not_installed(capsys, 
     steps.main(["--count", "--scenes", "tumbling_prism"])
     assert "tumbling_prism_rk4_step: symrot 193" in (report := capsys.readouterr().out)
     assert "not installed, left out: CasADi" in report
+
+
+def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():
+    assert [len({*check.claims(group)}) for group in check.LIMITS] == [40, 40, 20]
+    with pytest.raises(InputError, match=r"one of typical, naming, conditional; got 'typcal' .*did you mean 'typical'"):
+        check.claims("typcal")

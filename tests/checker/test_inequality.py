@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 import symrot
+from symrot.cli.main import main
 
 TRUE = (
     "sin²x ≤ 1", "|x+y| ≤ |x|+|y|", "|x-y| ≥ |x|-|y|", "x² + 1 > 0", "x^2 >= 0", "a b <= (a^2+b^2)/2", "cosh x >= 1",
@@ -81,3 +82,9 @@ def test_random_inequalities_agree_with_their_values():
             value = formula(point.get("x", 0), point.get("y", 0))
             assert value < 0 or (sign == ">" and abs(value) < 1e-12), left
     assert decided > 15
+
+
+@pytest.mark.parametrize("claim", ["|x + y| ≤ |x| + |y|", "x² + 1 > 0", r"x^2 \ge 0"])
+def test_the_command_line_takes_an_inequality_for_a_claim_and_not_for_a_file(claim, capsys):
+    assert main(["check", claim]) == 0
+    assert capsys.readouterr().out.startswith("true")

@@ -12,7 +12,7 @@ from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
-from symrot.checker.typed.defined_functions import TWO_CONVENTIONS
+from symrot.checker.typed.defined_functions import DISPUTED_NAMES, instead
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
@@ -27,8 +27,8 @@ time = Symbol("t", real=True)
 
 CONSTANTS: dict[str, Expr] = {"pi": sympy.pi}
 UNKNOWN_HERE = (
-    "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
-    "zoo", "infinity", "Infinity",
+    "ln", "arcsin", "arccos", "arctan", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo", "zoo",
+    "infinity", "Infinity", *DISPUTED_NAMES,
 )  # fmt: skip
 """Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
 
@@ -82,6 +82,8 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node, f"brackets after the function {name}")
     if not interpreter.implied:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
+    if name in DISPUTED_NAMES:
+        raise interpreter.fail(node, instead(DISPUTED_NAMES[name]))
     if name in UNKNOWN_HERE:
         hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
         raise interpreter.fail(
@@ -223,8 +225,8 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             else f"for a product write {name}*(..); symrot check --help lists the functions"
         )
         expected = f"a built-in function, or one declared as a function of t, instead of {name!r} ({known})"
-        if name in ("acot", "arccot"):
-            expected = TWO_CONVENTIONS
+        if name in DISPUTED_NAMES:
+            expected = instead(DISPUTED_NAMES[name])
         raise interpreter.fail(node, expected)
     interpreter.functions.add(name)
     return _function_of_time(interpreter, node)

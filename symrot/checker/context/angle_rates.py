@@ -12,7 +12,7 @@ from sympy import Expr, Matrix, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
-from symrot.checker.context.angle_orders import letter_of_angle, orders
+from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
 from symrot.checker.context.substitution import Substitution
 from symrot.conventions import SEQUENCES
@@ -42,10 +42,13 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     letters = list(dict.fromkeys([*rates.values(), *angles.values()]))
     if not components or not rates or not all(map(letter_of_angle, letters)):
         return
+    is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
     for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
         for order in orders(context, letters, sequence):
+            if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):
+                continue
             q, dq = _coordinates(order.places)
             rates_matrix = rate_jacobian(sequence, frame)
             omega = Matrix(rates_matrix.xreplace(dict(zip(rates_matrix.parameters, q, strict=True)))) * Matrix(dq)

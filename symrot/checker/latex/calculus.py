@@ -7,7 +7,7 @@ from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
-from symrot.checker.typed.defined_functions import DEFINED, INVERSES, TWO_CONVENTIONS
+from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.densities import over_mass
 from symrot.latex import tree
 
@@ -26,8 +26,8 @@ class CalculusPart(NamesPart):
             power = self.argument(raised.inside)
             sure = "a positive power of a sine or cosine (\\sin^{-1} may be read in two ways)"
             is_inverse = power == negated(number(1))
-            if is_inverse and name == "cot":
-                raise self.fail(TWO_CONVENTIONS, function)
+            if is_inverse and name in DISPUTED:
+                raise self.fail(instead(name), function)
             if is_inverse and name in INVERSES and not self.doubtful("inverse", function, self.end_of_next(), sure):
                 name, power = INVERSES[name], None
             elif power is not None and power.kind != "number" and (self.flips is None or power.kind != "neg"):

@@ -1,20 +1,20 @@
-"""Functions that are defined by other functions: coth, sech, csch, their inverses, asec, acsc, and arg.
+"""Functions that are defined by other functions: coth, sech, csch, their inverses, and arg.
 
-acot is not among them, since books define it by two formulas.
+The inverses of cot, sec and csc are not among them, since books disagree on their values.
 """
 
 from collections.abc import Callable, Mapping
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 
-__all__ = ["DEFINED", "INVERSES", "TWO_CONVENTIONS"]
+__all__ = ["DEFINED", "DISPUTED", "DISPUTED_NAMES", "INVERSES", "instead"]
 
 
 def _call(name: str) -> Callable[[Node], Node]:
     return lambda x: Node("call", name, (x,), x.span)
 
 
-_sinh, _cosh, _log, _root, _asin, _acos = map(_call, ("sinh", "cosh", "log", "sqrt", "asin", "acos"))
+_sinh, _cosh, _log, _root = map(_call, ("sinh", "cosh", "log", "sqrt"))
 ONE = number(1)
 
 
@@ -41,15 +41,19 @@ DEFINED: Mapping[str, Callable[[Node], Node]] = {
     "asech": lambda x: _log(_over(sum_of([ONE, _root(sum_of([ONE, negated(_square(x))]))]), x)),
     "arg": lambda x: Node("call", "atan2", (Node("call", "imaginary_part", (x,)), Node("call", "real_part", (x,)))),
     "acsch": lambda x: _log(sum_of([_over(ONE, x), _root(sum_of([_over(ONE, _square(x)), ONE]))])),
-    "asec": lambda x: _acos(_over(ONE, x)),
-    "acsc": lambda x: _asin(_over(ONE, x)),
 }
 """Function of one scalar -> the formula that it is, with the principal values of the inverses."""
 
-INVERSES = {name: f"a{name}" for name in ("sin", "cos", "tan", "sec", "csc")} | {
-    name: f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")
-}
+INVERSES = {name: f"a{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "coth", "sech", "csch")}
 """Function -> its inverse, which ``sin^-1 x`` usually means."""
 
-TWO_CONVENTIONS = "one of the two conventions for the inverse of cot, atan(1/x) or pi/2 - atan(x)"
-"""What a message asks for instead of acot(x) or cot^-1 x."""
+DISPUTED = {"cot": "atan(1/x) or pi/2 - atan(x)", "sec": "acos(1/x)", "csc": "asin(1/x)"}
+"""Function -> what to write instead of its inverse, whose values for x < 0 differ from book to book."""
+
+DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a", "arc")}
+"""``acot`` and ``arccot`` -> the function cot; likewise for sec and csc."""
+
+
+def instead(name: str) -> str:
+    """Return what a message expects instead of the inverse of a function in :data:`DISPUTED`."""
+    return f"{DISPUTED[name]} instead of the inverse of {name}, whose values for x < 0 differ from book to book,"

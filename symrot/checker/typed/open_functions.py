@@ -4,7 +4,7 @@ import re
 
 from symrot.checker.claim.tree import Node, negated, number, product, walk
 from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
-from symrot.checker.typed.defined_functions import DEFINED, INVERSES, TWO_CONVENTIONS
+from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import SINGLE_ARGUMENT
 
@@ -18,8 +18,8 @@ class OpenFunctionsPart(Cursor):
         """Parse what follows a function's name in ``sin 2x``, ``sin^2 x`` or ``tan^-1 x``; return the call or power."""
         exponent = self.function_exponent(token)
         inverse = exponent == number(-1)
-        if inverse and function == "cot":
-            raise self.fail(TWO_CONVENTIONS, token.start)
+        if inverse and function in DISPUTED:
+            raise self.fail(instead(function), token.start)
         inverse = inverse and function in INVERSES
         if inverse and not self.other_reading("inverse", token.start, token.start, self.end_of_run()):
             function, exponent = INVERSES[function], None

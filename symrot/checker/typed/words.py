@@ -26,7 +26,7 @@ __all__ = [
 SINGLE_ARGUMENT = (
     "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sinh", "cosh",
     "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "arcsinh", "arccosh", "arctanh", "acoth", "asech",
-    "acsch", "asec", "acsc", "arcsec", "arccsc", "arsinh", "arcosh", "artanh", "arcoth", "arsech", "arcsch",
+    "acsch", "arsinh", "arcosh", "artanh", "arcoth", "arsech", "arcsch",
     "tg", "ctg", "cosec",
     "exp", "log", "ln", "sqrt", "abs", "arg", "det", "trace", "tr", "inverse", "transpose",
 )  # fmt: skip
@@ -38,7 +38,7 @@ ALIASES = {
     "MutableDenseMatrix": "Matrix", "Determinant": "det", "Trace": "trace", "Transpose": "transpose",
     "Inverse": "inverse", "arctan2": "atan2", "conj": "conjugate",
     "Re": "real_part", "Im": "imaginary_part",
-    **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch", "sec", "csc")},
+    **{f"arc{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     **{f"ar{name}": f"a{name}" for name in ("sinh", "cosh", "tanh", "coth", "sech", "csch")},
     "tr": "trace", "tg": "tan", "ctg": "cot", "cosec": "csc",
 }  # fmt: skip

@@ -168,7 +168,7 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect |L|^2 - 2 T I_mid as hi, lo, for body rates that are integers."""
+        """Return the scaled defect |L|^2 - 2 T I_mid for integer body rates, as two doubles whose sum it is."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

@@ -247,7 +247,7 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return, for each rate, a bound of its deviation for times within ``reach`` of t and states ``radii`` of y.
+        """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
 
         A bound is infinite if a pole may lie in these discs. Square roots near zero need ``whole``, which is 1 divided
         by the missed share, see the module's text.

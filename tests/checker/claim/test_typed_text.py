@@ -206,7 +206,7 @@ HYPERBOLIC = (
     "d/dt (coth x) = -ẋ csch² x", "arcsinh x = ln(x + √(x² + 1))", "cosec x sin x = 1",
     r"\coth x = \frac{1}{\tanh x}", r"\operatorname{sech}^2 x = 1 - \tanh^2 x", r"\mathrm{sin}^2 x + \cos^2 x = 1",
     r"\operatorname{artanh} x = \frac12\ln\frac{1+x}{1-x}", r"\sinh^{-1} x = \ln(x + \sqrt{x^2+1})", "arsinh(x) = sinh^-1 x",
-    "sec^-1 x + csc^-1 x = π/2", "asec(x) == acos(1/x)", "asech(x) == acosh(1/x)",
+    "asech(x) == acosh(1/x)",
 )  # fmt: skip
 
 
@@ -292,10 +292,11 @@ def test_tr_is_the_trace():
     assert symrot.check("tr == 2*x").verdict == "definition"
 
 
-@pytest.mark.parametrize(
-    "claim", ["tan^-1 x + cot^-1 x = π/2", r"\cot^{-1} x = \tan^{-1}(1/x)", "acot(x) == atan(1/x)"]
-)
-def test_the_inverse_of_cot_is_asked_about(claim):
-    """Books define it as atan(1/x) or as pi/2 - atan(x), which differ for x < 0."""
-    with pytest.raises(InputError, match="one of the two conventions for the inverse of cot"):
+@pytest.mark.parametrize(("claim", "instead"), [
+    ("tan^-1 x + cot^-1 x = π/2", r"atan\(1/x\) or pi/2"), (r"\cot^{-1} x = \tan^{-1}(1/x)", r"atan\(1/x\) or pi/2"),
+    ("acot(x) == atan(1/x)", r"atan\(1/x\) or pi/2"), ("asec(x) == acos(1/x)", r"acos\(1/x\)"), ("arccsc x = 1", r"asin\(1/x\)"),
+    (r"\operatorname{arcsec} x = \arccos(1/x)", r"acos\(1/x\)"),
+])  # fmt: skip
+def test_inverses_on_which_books_disagree_are_asked_about(claim, instead):
+    with pytest.raises(InputError, match=f"expected {instead}.* instead of the inverse"):
         symrot.check(claim)
