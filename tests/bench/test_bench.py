@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import check, command, kernels, skip, steps
+from symrot.bench import check, command, kernels, skip
 from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
 from symrot.bench.comparison import reference as reference_module
-from symrot.bench.comparison import suite
+from symrot.bench.comparison import steps, suite
 from symrot.bench.comparison.contestants import CONTESTANTS, chosen
 from symrot.bench.comparison.exact_path import ExactPath
 from symrot.bench.comparison.peers import scalar_kernel

@@ -1,6 +1,6 @@
 """Comparison of one emitted time step with the same step made by other tools: operations, and nanoseconds per step.
 
-    python -m symrot.bench.steps [--rounds 31] [--scenes NAME ..] [--count]
+    python -m symrot.bench.comparison.steps [--rounds 31] [--scenes NAME ..] [--count]
 
 Each tool gets the rates of the scene as the equations of motion state them, without symrot's common terms, applies the
 method to them and shares common terms in its own way. All C is compiled with the same flags; the contestants alternate
@@ -161,7 +161,9 @@ def _own_text(step: StepText) -> str:
 
 def main(arguments: list[str] | None = None) -> None:
     """Print, for each scene and method, operations and times of symrot's step and of the other tools'."""
-    parser = argparse.ArgumentParser(prog="python -m symrot.bench.steps", description=(__doc__ or "").split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m symrot.bench.comparison.steps", description=(__doc__ or "").split("\n")[0]
+    )
     parser.add_argument("--rounds", type=int, default=31)
     parser.add_argument("--scenes", nargs="+", metavar="NAME", default=SCENES)
     parser.add_argument("--count", action="store_true", help="count operations only")
