@@ -171,9 +171,10 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of one free body from many initial angular velocities and attitudes.
+    """Return the motions of one free body from many initial states as a batch, which one call of C computes.
 
-    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo, of shape (8,) or (n, 8).
+    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo of doubles, shape (8,) or
+    (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -189,7 +190,7 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of free bodies in principal axes, given their three moments of inertia, kg m^2.
+    """Return the motions of free bodies, given their principal moments of inertia, kg m^2, as a batch for C.
 
     The other arguments are as for :func:`free_bodies`.
     """
@@ -214,7 +215,7 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the batch of the motions of free bodies whose axes are not principal axes, and a Boolean array.
+    """Return the motions of free bodies whose axes are not principal axes as a batch for C, and a Boolean array.
 
     The array is false for the motions that the batch cannot compute exactly; they must be computed one by one.
     ``entries`` are the components xx, yy, zz, xy, xz and yz of the inertia tensors, kg m^2; the other arguments are as
@@ -240,7 +241,7 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the batch of the motions of symmetric heavy tops from many initial states.
+    """Return the motions of symmetric heavy tops from many initial states as a batch, which one call of C computes.
 
     ``across`` and ``own`` are the moments of inertia across and about the symmetry axis; ``pull`` is weight times
     height as hi, lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
@@ -251,7 +252,7 @@ def tops(
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of symmetric gyrostats, rotor along ``axis``, from many initial states.
+    """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C.
 
     ``across`` and ``own`` are the moments of inertia across and about the axis, ``rotor`` is the angular momentum of
     the rotor.
@@ -263,7 +264,7 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the batch of symmetric bodies under a constant torque about ``axis``, from many initial states.
+    """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C.
 
     ``across`` and ``own`` are the moments of inertia across and about the axis.
     """
@@ -275,7 +276,7 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the batch of the motions of bodies driven about one axis, from many initial states.
+    """Return the motions of bodies driven about one axis, from many initial states, as a batch for one call of C.
 
     ``constants`` describes one body for all initial states, or is a list with one body for each initial state.
     """

@@ -57,7 +57,10 @@ def switching_function(scene: Scene) -> str:
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure of a scene before any rule is applied: full tensor, free constants, full attitude."""
+    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude.
+
+    The rules of a plan simplify this structure.
+    """
     names: set[str] = set(RESERVED)
     torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
     return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))

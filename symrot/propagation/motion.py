@@ -149,7 +149,7 @@ class Setup:
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return plan and kernel in which time is counted from an epoch, a parameter that can change between steps."""
+        """Return a plan and its kernel that count time from an epoch, a parameter that can change between steps."""
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
@@ -350,7 +350,7 @@ class RestartableMotion(Motion):
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
 
 
 class SteppedInC(ABC):
@@ -404,7 +404,7 @@ class ConstantMotion(RestartableMotion):
     """A motion in which every state is constant, so that the plan leaves no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return ConstantMotion(self.setup, self.setup.plan.from_start(initial))
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
@@ -425,7 +425,7 @@ class ClosedFormMotion(RestartableMotion):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ClosedFormMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return ClosedFormMotion(self._shared, self.setup.plan.from_start(initial))
 
     @property
@@ -474,7 +474,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "SteppedMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return SteppedMotion(self._shared, self.setup.plan.from_start(initial))
 
     @property
@@ -530,7 +530,7 @@ class SciPyMotion(ShiftableMotion):
     """A motion integrated by one of SciPy's methods."""
 
     def from_start(self, initial: Initial) -> "SciPyMotion":
-        """Return the motion from another initial state of the same structure."""
+        """Return the motion from another initial state, for which the equations must have the same form."""
         return SciPyMotion(self.setup, self.setup.plan.from_start(initial))
 
     @cached_property

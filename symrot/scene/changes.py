@@ -254,7 +254,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
     """Return the three components of the vector at a path of the content.
 
-    If the content gives the vector in another form, its components are those that were read from the content.
+    If the content gives the vector in another form, such as ``omega_space``, the components that were read are used.
     """
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:

@@ -86,7 +86,7 @@ def how_drawn(body: Body) -> str:
 
 
 def _of_facets(body: Body) -> Patch:
-    """Return the triangles of a mesh as one patch."""
+    """Return the triangles of a body's mesh as one patch of its surface."""
     start = [float(value) for value in body.origin]
     points = [(x - start[0], y - start[1], z - start[2]) for facet in body.facets for x, y, z in facet]
     return Patch(points, len(body.facets), 3, is_mesh=True)

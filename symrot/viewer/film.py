@@ -159,7 +159,10 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
 
 
 def _polygons(patch: Patch) -> list[Floats]:
-    """Return the polygons of a patch, each of shape (4, 3), or (3, 3) in a mesh; none for curves and points."""
+    """Return the polygons of a patch of the body's surface: arrays of corners, shape (4, 3), or (3, 3) in a mesh.
+
+    A curve, separate points and the surface of a hole have none.
+    """
     if patch.is_mesh:
         return list(np.array(patch.points).reshape(-1, 3, 3))
     if patch.rows < 2 or patch.is_hole:

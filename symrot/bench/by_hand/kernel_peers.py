@@ -77,7 +77,7 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the name of a kernel without derivatives, and the outputs and inputs of the derivatives, in order."""
+    """Return the name of the kernel that a kernel with derivatives extends, and its derivatives as (output, input)."""
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
     return name.split(BY)[0], [(output, variable) for output, variable in entries]
 

@@ -43,7 +43,7 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its start, each as a pair hi, lo."""
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles."""
 
     rate: tuple[float, float]
     start: tuple[float, float]

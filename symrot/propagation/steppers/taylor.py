@@ -176,7 +176,7 @@ def integration(
 
 
 class _Stepper(Stepper):
-    """A loaded library with a jet and the Taylor stepper, built from :func:`translation_unit`."""
+    """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
 
     name = "taylor"
     reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")

@@ -195,9 +195,9 @@ class Regime:
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and output quantities with the scene's constants inserted.
+        """Return the parameters of rates, guards and output quantities, with the scene's constants inserted.
 
-        What remains are formulas in the epoch and in the modes (values of the switching functions).
+        They are then formulas in the epoch and in the modes (values of the switching functions) alone.
         """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
@@ -209,9 +209,9 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard, whether the smooth motion ends where its formula becomes zero.
+        """Return, for each guard (formula whose zero makes a function switch), whether its zero ends the smooth motion.
 
-        It does not if the switching function has no effect for the given modes, as in an unused branch of ``where``.
+        It does not if the function has no effect for the given modes, as in an unused branch of ``where``.
         """
         key = tuple(modes.values())
         if key not in self._active:
@@ -229,7 +229,7 @@ def _distance(switch: Switch) -> Node:
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program with the additional parameters ``more``, which only the formulas of guards use."""
+    """Return the program with the additional parameters ``more``, which only the search for switches uses."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

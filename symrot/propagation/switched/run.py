@@ -335,9 +335,9 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether a guard's formula falls from >= 0 to <= 0 between two points (time, states) of the motion.
+        """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion.
 
-        If it does, its function (sign, floor, ..) switches in between.
+        It does if the formula of its guard falls from >= 0 to <= 0.
         """
         try:
             before, after = (
@@ -392,9 +392,9 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard, whose formula depends on time alone, is negative only because time is rounded.
+        """Return whether a guard is negative, just after its function has switched, only because time is rounded.
 
-        This can happen just after a switch; the function then must not switch again.
+        The function then must not switch again. The formula of the guard must depend on time alone.
         """
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
