@@ -122,6 +122,7 @@ def _on_name(
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
+    from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.sizes import by_other_sizes
     from symrot.checker.recognition.naming import verdict_on_name
 
@@ -135,9 +136,14 @@ def _on_name(
             verdict = in_context(one, own, verdict)
         return verdict
 
+    def judge_with_motion(one: Claim, own: NamedFormula) -> Verdict:
+        return _on_motion(one, judge(one, own))
+
     with _place_of(claim):
         verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
         verdict = _on_motion(claim, verdict)
+        if repair:
+            verdict = by_exchanged_letters(claim, named, verdict, judge_with_motion)
         if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
             by_name = verdict_on_name(claim, named, repair) if claim.context else verdict
             by_hypotheses = Verdict("definition", reason=WITH_HYPOTHESES, notes=verdict.notes)
