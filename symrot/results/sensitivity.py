@@ -36,7 +36,7 @@ class Sensitivity(NamedTuple):
     Examples
     --------
     >>> import symrot
-    >>> motion = symrot.propagate("t_handle", t=[0, 1], sensitivities=["omega"])
+    >>> motion = symrot.propagate("t_handle", t=[0, 1], sensitivities=["omega", "attitude"])
     >>> motion.sensitivities["omega"].rotation.shape
     (2, 3, 3)
     """

@@ -97,9 +97,9 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
         omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
         exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
         initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
-        scene = replace(scene, initial=initial, span=scene.span._replace(start=Fraction(start)))
+        scene = replace(scene, initial=initial)
         columns = _columns(scene, read_variables(scene, TRANSITION))
-    values, slopes = _follow(scene, columns, np.array([stop]))
+    values, slopes = _follow(scene, columns, np.array([stop]), start)
     return np.concatenate([slopes[0, :RATES], _rotation(values[:, RATES:], slopes[:, RATES:])[0]])
 
 
@@ -221,17 +221,23 @@ def _library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Pa
 # ------------------------------------------------------------------------------------------------ motions
 
 
-def _follow(scene: Scene, columns: Sequence[_Column], times: Floats) -> tuple[Floats, Floats]:
-    """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns)."""
+def _follow(
+    scene: Scene, columns: Sequence[_Column], times: Floats, begin: float | None = None
+) -> tuple[Floats, Floats]:
+    """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
+
+    ``begin`` is the time, s, of the scene's initial state; default: the start of its span.
+    """
+    begin = float(scene.span.start) if begin is None else begin
     values, slopes = [], []
     for first in range(0, len(columns), AT_ONCE):
-        states, derivatives = _follow_some(scene, columns[first : first + AT_ONCE], times)
+        states, derivatives = _follow_some(scene, columns[first : first + AT_ONCE], times, begin)
         values.append(states)
         slopes.append(derivatives)
     return values[0], np.concatenate(slopes, axis=2)
 
 
-def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats) -> tuple[Floats, Floats]:
+def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin: float) -> tuple[Floats, Floats]:
     structure = _structure(scene, columns)
     plan = Plan(scene, structure, ())
     rates, parameters = _rates(plan)
@@ -252,7 +258,7 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats) -> tup
         for column, scale, names, slopes in zip(columns, sizes, depends, moved, strict=True):
             state += [scale * slope for slope in column.start]
             p += [scale * float(slopes[name]) for name in names]
-        motion = taylor.integration(path, p, state, float(scene.span.start), TOLERANCE)
+        motion = taylor.integration(path, p, state, begin, TOLERANCE)
         try:
             samples, _ = motion.sample_sorted(times, False)
         except PropagationError as error:
