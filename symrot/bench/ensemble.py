@@ -222,7 +222,11 @@ def main(arguments: list[str] | None = None) -> None:
     """Print the times of ensembles, symrot against heyoka, at equal error."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
+    parser.add_argument(
+        "--orders",
+        action="store_true",
+        help="compare the times of different orders of symrot's Taylor series, instead of heyoka",
+    )
     parser.add_argument(
         "--many", type=int, default=4096, help="number of trajectories in the large ensemble, a multiple of 8"
     )

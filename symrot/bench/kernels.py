@@ -280,7 +280,10 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], outputs: Floats) -> None:
         error = float(np.max(np.abs(outputs - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
-            raise AssertionError(f"{tool}: expected the results of symrot for {name}, got a difference of {error:.1e}")
+            raise AssertionError(
+                f"{tool}: expected outputs of {name} that agree with those of symrot, got outputs "
+                f"that differ by {error:.1e}"
+            )
         contestants.append(Contestant(tool, operations, runs))
 
     around = _drivers(signature, False)

@@ -346,9 +346,13 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="run heyoka in its default setting only")
-    parser.add_argument("--orders", action="store_true", help="compare orders of symrot's series instead")
     parser.add_argument(
-        "--reference", action="store_true", help="compute the last states and print them (takes minutes)"
+        "--orders",
+        action="store_true",
+        help="compare the times of different orders of symrot's Taylor series, instead of heyoka",
+    )
+    parser.add_argument(
+        "--reference", action="store_true", help="compute the reference states again and print them (takes minutes)"
     )
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)

@@ -46,7 +46,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches."""
+    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches.
+
+    The reach is the largest |x| that is tested.
+    """
 
     name: str
     exact: Callable[..., Any]

@@ -493,7 +493,9 @@ REFUSALS += (ValueError,)
 def sentence(reason):
     """Return a sentence for the user about the exception that a failed check raised."""
     if isinstance(reason, (SyntaxError, LookupError)):
-        return f"the certificate or the C text does not have the form that symrot emits ({reason.args[0]!r})"
+        return (
+            f"the certificate does not follow its schema, or the C text is not as symrot emits it ({reason.args[0]!r})"
+        )
     is_sentence = isinstance(reason, (ValueError, OSError))
-    text = str(reason) if is_sentence else f"the certificate does not have the form that symrot emits ({reason!r})"
+    text = str(reason) if is_sentence else f"the certificate does not follow its schema ({reason!r})"
     return text if len(text) <= 400 else f"{text[:200]} .. {text[-200:]}"

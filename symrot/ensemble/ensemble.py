@@ -273,7 +273,7 @@ class Ensemble(MotionSamples):
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
         if self.t.ndim != 1:
             raise InputError(
-                "t: expected sample times that all motions share, for statistics, got other times for each"
+                "t: expected sample times that all motions share, for statistics, got different times for each motion"
             )
         values = self.quantity(quantity)
         if not omit_stopped:

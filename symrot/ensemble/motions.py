@@ -208,7 +208,7 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that integrates motions of a plan in SIMD lanes, of an order for the tolerance."""
+    """Return the compiled library that integrates motions of a plan in SIMD lanes, for a tolerance."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)

@@ -71,9 +71,9 @@ class Numbers:
         return values
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the value of a formula for each trajectory.
+        """Return the values of a formula, one for each trajectory.
 
-        It is computed once for trajectories with equal constants.
+        For trajectories with equal constants, the formula is evaluated only once.
         """
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)

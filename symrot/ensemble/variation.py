@@ -429,7 +429,7 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
     kind = TORQUE_KINDS[scene.torques[place.torque].kind]
     field = next(field for field in kind.fields if field.name == place.field)
     if field.name in FIXED:
-        raise InputError(f"parameters: {name} is the same for all trajectories; {FIXED[field.name]}")
+        raise InputError(f"parameters: {name} is the same for all trajectories and cannot vary; {FIXED[field.name]}")
     if field.shape == "scalar or vector" and name not in places and np.ndim(values) == 1:
         values = np.repeat(_array(values, (), name, field.unit)[:, None], len(chosen), axis=1)
     array = _array(values, () if name in places else (len(chosen),), name, field.unit)

@@ -249,9 +249,9 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
 def _read_sdf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
     if inertial.get("auto", "false") not in ("false", "0"):
-        raise InputError("inertial: expected a mass and a tensor, got auto, by which the simulator computes them")
+        raise InputError("inertial: expected a mass and a tensor, got auto, which leaves both to the simulator")
     if inertial.find("fluid_added_mass") is not None:
-        raise InputError("inertial: expected a rigid body alone, got fluid_added_mass")
+        raise InputError("inertial: expected the inertia of a rigid body only, got the element fluid_added_mass")
     mass = _numbers(inertial.findtext("mass", "1"), 1, "mass")[0]
     inertia = inertial.find("inertia")
     defaults = {key: "1" if key in ("ixx", "iyy", "izz") else "0" for key in _ENTRIES}
@@ -291,7 +291,8 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; MuJoCo then computes the inertia from geoms, which is not read")
     if root.find(".//include") is not None:
         raise InputError(
-            "expected a model in one file, got <include>, whose settings may change inertials; save it as one"
+            "expected a model in one file, got <include>, whose settings may change inertials; save the model as one "
+            "file"
         )
     settings: dict[str, str] = {}
     for compiler in root.iter("compiler"):
@@ -314,7 +315,10 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
         )
     turns = [key for key in ORIENTATIONS if inertial.get(key)]
     if len(turns) > 1 or (turns and ways == ["fullinertia"]):
-        raise InputError(f"inertial: expected one orientation, and none with fullinertia, got {' and '.join(turns)}")
+        raise InputError(
+            "inertial: expected at most one orientation, and no orientation with fullinertia, got "
+            f"{' and '.join(turns)}"
+        )
     rotation = None
     for key in turns:
         count, rotation_of = ORIENTATIONS[key]

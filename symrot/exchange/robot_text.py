@@ -91,7 +91,10 @@ def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, wh
         ),
     ]
     if any(abs(x - y) > scale * ROUNDING for x, y, scale in pairs):
-        raise InputError(f"{where}: expected a link whose inertial can be written, got one that reads back differently")
+        raise InputError(
+            f"{where}: expected a link whose inertial can be replaced, but the new file gives other "
+            "values when it is read"
+        )
 
 
 def _is_utf8(content: bytes) -> bool:

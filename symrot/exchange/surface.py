@@ -99,7 +99,7 @@ def require_closed(surface: Surface, where: str) -> None:
         ]
         repeats = len(proper) - len(np.unique(proper, axis=0))
         if repeats:
-            raise InputError(f"{where}: expected each triangle once, got {repeats} that occur again; remove them")
+            raise InputError(f"{where}: expected each triangle once, got {repeats} repeated triangles; remove them")
 
 
 def _defect(surface: Surface) -> str:

@@ -150,8 +150,8 @@ def _sum(terms: NDArray[np.float64]) -> float:
 def _bound(powers: Exponents) -> float:
     """Return a bound of the relative error of one term of an integral, from the number of its rounded operations.
 
-    det takes 8 (edges and corners are differences of given coordinates), a coefficient 5 k + 9 for degree k, their
-    product 1, the sum BLOCK + 1.
+    The operations are: 8 for the determinant (edges and corners are differences of given coordinates), 5 k + 9 for a
+    coefficient of degree k, 1 for the product of both, and BLOCK + 1 for the sum.
     """
     count = 8 + 5 * sum(powers) + 9 + 1 + BLOCK + 1
     return count * ROUNDING * 1.001

@@ -321,7 +321,7 @@ def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield (kind of slip with the symbol, wrong answer) for usual slips, each with one quantity.
+    """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer).
 
     The slips are: a diameter used as a radius or the reverse, degrees used as radians, and a unit that is not
     converted.

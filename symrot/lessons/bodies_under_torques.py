@@ -45,7 +45,7 @@ LESSONS = {
             Number(
                 "The top could sleep upright, because its spin is above the bound:",
                 "p_\\psi^2 - 4 A W c_3",
-                "At the same bound, the two rates",
+                r"At the bound $p_\psi^2 = 4 A W c_3$",
                 "kg^2 m^4/s^2",
             ),
         ),

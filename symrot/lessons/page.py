@@ -64,9 +64,9 @@ def _steps_of(page: Page, sections: Sequence[str]) -> int:
 def _for_the_library(sections: Sequence[str]) -> str:
     titles = [f'"{section}"' for section in sections]
     if len(titles) == 1:
-        return f"A course can leave out the section {titles[0]}: only the library needs it, to evaluate motions."
+        return f"A course can leave out the section {titles[0]}: only symrot's numeric code needs it."
     listed = f"{', '.join(titles[:-1])} and {titles[-1]}"
-    return f"A course can leave out the sections {listed}: only the library needs them, to evaluate motions."
+    return f"A course can leave out the sections {listed}: only symrot's numeric code needs them."
 
 
 def _link(name: str) -> str:

@@ -145,15 +145,15 @@ def _require_apart(axes: Sequence[Axis]) -> None:
     rates = [axis.target.name for axis in axes if axis.target.unit == "rad/s" and axis.target.name.startswith("omega_")]
     if initial and rates:
         raise InputError(
-            f"vary: expected angular velocities either by name or by path in the scene file, got {rates[0]} beside a "
-            "path in initial"
+            f"vary: expected angular velocities either by name or by path in the scene file, got both {rates[0]} and "
+            "a path in initial"
         )
     paths = any(axis.target.path[:1] in (("body",), ("torque",)) for axis in axes)
     constants = [axis.target.name for axis in axes if not axis.target.path and axis.target.name not in rates]
     if paths and constants:
         raise InputError(
-            f"vary: expected constants either by name or by path in the scene file, got {constants[0]} beside a path "
-            "in body or torque"
+            f"vary: expected constants either by name or by path in the scene file, got both {constants[0]} and a "
+            "path in body or torque"
         )
 
 

@@ -59,7 +59,7 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene, with the Euler sequence that the outputs of a sweep name (if any) in its output section."""
+    """Return the scene, extended by the Euler sequence that occurs in the names of a sweep's outputs, if any."""
     from dataclasses import replace
 
     sequences = []

@@ -230,9 +230,9 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values once.
+    """Read all values of a column once, to advance all searches for values of given ranks.
 
-    Finish the searches with few values in their interval, and return narrower ones for the others.
+    A search with few values in its interval is finished; for each other search, return searches in narrower intervals.
     """
     open_searches = []
     for search in searches:

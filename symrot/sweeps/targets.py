@@ -86,7 +86,9 @@ def _is_fixed(name: str) -> bool:
 
 def _require_variable(field: str, name: str) -> None:
     if field in FIXED:
-        raise InputError(f"{name}: expected a value that can vary, but {field} is the same for all; {FIXED[field]}")
+        raise InputError(
+            f"{name}: expected a value that can vary, but {field} is the same for all trajectories; {FIXED[field]}"
+        )
 
 
 def _unit_of_constant(scene: Scene, name: str) -> str:

@@ -12,6 +12,7 @@ from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c
 from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
 from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_program, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
@@ -110,6 +111,7 @@ class StepText(KernelText):
             order = f" --order {self.method.order}"
         contract = (
             ("Method", self.method.formula),
+            *((("Parameters", "those of the scene are in {kernel}_parameters.h"),) if self._parameter_names else ()),
             ("Test", "{kernel}_test.c compares the functions with values of 40 digits"),
             ("Certificate", "{kernel}.cert.json: the text computes the formula of the method"),
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
@@ -137,8 +139,10 @@ class StepText(KernelText):
         )
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text: header, source, test."""
-        return super().c_files(bounds) | {f"{self.name}_test.c": self._test}
+        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
+        values = list(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
+        parameters = {parameters_file(self.name): parameters_header(self.name, values)} if values else {}
+        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
 
     @cached_property
     def numpy(self) -> str:
@@ -204,14 +208,14 @@ class StepText(KernelText):
     def _test(self) -> str:
         """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
         count, parameters = len(self._vectors[0][0]), self.rates.inputs.parameters
+        included = [f'#include "{parameters_file(self.name)}"'] if parameters else []
         return "\n".join([
             f"/* Test of {self.name}: returns 0 if double and float agree with values of {DIGITS} digits. */",
-            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', "",
+            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', *included, "",
             f"#define STATES {count}", f"#define VECTORS {len(self._vectors)}", "",
             _table("vectors[VECTORS][2][STATES]", [[start, after] for start, _, after in self._vectors]),
             _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
-            *([_table(f"parameters[{len(parameters)}]", list(parameters))] if parameters else []), "",
-            *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
+            "", *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
             "int main(void)", "{", "    const int failed = check() || checkf();",
             f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with {DIGITS} digits");',
             "    return failed;", "}",
@@ -221,7 +225,7 @@ class StepText(KernelText):
         parameters = self.rates.inputs.parameters
         copies = [f"    {real.type} p[{len(parameters)}];",
                   f"    for (int i = 0; i < {len(parameters)}; ++i)",
-                  f"        p[i] = ({real.type})parameters[i];"] if parameters else []  # fmt: skip
+                  f"        p[i] = ({real.type})symrot_{self.name}_parameters[i];"] if parameters else []  # fmt: skip
         called = ", ".join(["0", "x", *(["p"] if parameters else []), f"({real.type})sizes[k]", "next"])
         return [
             f"static int check{real.suffix}(void)", "{", f"    {real.type} x[STATES], next[STATES];", *copies,

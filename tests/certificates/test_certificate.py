@@ -466,7 +466,7 @@ EDITS = {  # file, what is edited -> what takes its place, what is said of it
     "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h was changed"),
     "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h was changed"),
     "ends": (".c", "\n", "\r\n", "its line endings differ", "was changed after it was certified"),
-    "none": (".c", None, None, "expected its file euler_zyx_body_rates.c in the same folder", "it is not there"),
+    "none": (".c", None, None, "expected its file euler_zyx_body_rates.c in the same folder", "but it is missing"),
 }  # fmt: skip
 
 

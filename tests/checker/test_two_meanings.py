@@ -26,3 +26,43 @@ def test_the_other_side_shows_what_is_meant(text, verdict):
 def test_the_power_zero_of_zero_is_a_convention():
     assert any("0^0 is read as 1" in note for note in symrot.check("0^0 = 1").notes)
     assert not symrot.check("2^0 = 1").notes
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("K = ½ · 2 kg · (3 m/s)² = 8 J", "false"), ("a = (20 m/s)²/50 m = 8 m/s²", "definition"),
+    ("T = 2π sqrt(1 m/(9.81 m/s²)) = 2.06 s", "false"),
+])  # fmt: skip
+def test_raised_digits_after_a_bracket_are_no_name_beside_units(text, verdict):
+    assert symrot.check(text).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("(p q)* = q* p*", "true"), ("(p q)* = p* q*", "false"), ("q* v q = R^T v", "recognised"),
+    ("R(q) v = q v q⁻¹", "recognised"), ("a* b = b* a", "true"), ("z̄ = x - iy where z = x + iy", "true"),
+])  # fmt: skip
+def test_a_star_before_a_blank_may_be_a_conjugate(text, verdict):
+    assert symrot.check(text, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("q = θ̇ cos φ + ψ̇ sin φ cos θ", "recognised"), ("q = θ̇ cos φ - ψ̇ sin φ cos θ", "doubtful"),
+    ("p = φ̇ + ψ̇ sin θ", "doubtful"),
+])  # fmt: skip
+def test_the_rates_of_an_aircraft_belong_to_roll_pitch_and_yaw(text, verdict):
+    assert symrot.check(text).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("v = sqrt(2 g h) = sqrt(2 · 9.81 m/s² · 5 m) = 9.9 m/s", "definition"), ("I = ½ m r² = 0.5 · 2 · 0.1² = 0.01", "definition"),
+    ("I = ½ m r² = 0.5 · 2 · 0.1² = 0.02", "false"), ("T = sin²x + cos²x = 2", "false"), ("I = 0.02", "definition"),
+])  # fmt: skip
+def test_numbers_put_into_a_formula_are_no_identity(text, verdict):
+    assert symrot.check(text, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "sequence", "verdict"), [
+    ("R_11 = cos ψ cos φ - cos θ sin φ sin ψ", "ZXZ", "recognised"), ("R_31 = -sin θ", "ZYX", "recognised"),
+    ("R_31 = sin θ", "ZYX", "definition"),
+])  # fmt: skip
+def test_an_entry_of_the_matrix_of_a_stated_sequence(text, sequence, verdict):
+    assert symrot.check(text, sequence=sequence, repair=False).verdict == verdict

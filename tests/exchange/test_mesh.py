@@ -213,7 +213,7 @@ def doubled(surface):
     (without(sphere(2), 0, 20), "6 open edges"),
     (with_flipped(box(), 3), "3 edges at which two neighbouring triangles have opposite orientation"),
     (box().flipped(), "turned inside out, with a volume of -1 m^3; write flip = true"),
-    (doubled(box()), "expected each triangle once, got 12 that occur again"),
+    (doubled(box()), "expected each triangle once, got 12 repeated triangles"),
     (joined(box(), box((1, 1, 1), (0.4, 0.3, 0.2))), "a winding number of 2"),
     (joined(box((3, 3, 3)), box((1, 1, 1), (1, 1, 1))), "a winding number of 2"),
     (joined(box((3, 3, 3)), box((1, 1, 1), (7, 7, 7)).flipped()), "a winding number of -1"),

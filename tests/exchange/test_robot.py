@@ -209,7 +209,7 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (MJCF.format(compiler='coordinate="global"', inertia='diaginertia="1 1 1"'), "expected coordinate = 'local', got 'global'"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1"').replace("<worldbody>", '<include file="x"/><worldbody>'), "whose settings may change inertials"),
     (MJCF.format(compiler="", inertia=""), "expected one of diaginertia and fullinertia, got neither"),
-    (MJCF.format(compiler="", inertia='fullinertia="1 1 1 0 0 0" quat="1 0 0 0"'), "none with fullinertia, got quat"),
+    (MJCF.format(compiler="", inertia='fullinertia="1 1 1 0 0 0" quat="1 0 0 0"'), "no orientation with fullinertia, got quat"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" quat="0 0 0 0"'), "expected a quaternion that is not zero"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" xyaxes="1 0 0 2 0 0"'), "expected a y axis that is not parallel to the x axis"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 0"'), "expected three positive principal moments"),

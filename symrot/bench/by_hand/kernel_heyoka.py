@@ -28,7 +28,7 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's functions for a kernel: for one sample, and for a batch (1 or ``LANES``).
+    """Return the addresses of heyoka's functions for a kernel: one sample, and 1 or ``LANES`` samples of a batch.
 
     heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 
@@ -39,7 +39,9 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():
-        raise ImportError(f"expected {_LOADED}, which lists the shared library of heyoka; this system has no such file")
+        raise ImportError(
+            f"expected the file {_LOADED}, which names the shared library of heyoka; this system has no such file"
+        )
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:
             ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)

@@ -163,7 +163,10 @@ class ExactPath:
                         root = self._newton(t)
                         if root is not None and root > self.t0:
                             return root - self.t0
-        raise InputError("expected a free body off its separatrix, got a body whose angular velocity does not return")
+        raise InputError(
+            "expected a free body that is not on its separatrix, got a body whose angular velocity does "
+            "not return to its start"
+        )
 
     def _newton(self, t: Any) -> Any:
         """Return the time near t at which omega has its initial value, or None if Newton's method fails."""

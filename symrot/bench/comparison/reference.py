@@ -127,7 +127,9 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
         except _Unavailable as reason:
             skipped.append(f"{name}: {reason}")
     if not paths:
-        raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
+        raise SymrotError(
+            f"{problem.scene.name}: expected a motion for which a reference can be computed; {'; '.join(skipped)}"
+        )
     (name, states), *more = paths
     others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
     result = Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))

@@ -242,7 +242,7 @@ def _sleeping(d: Derivation, potential: Expr) -> None:
     )
     fast, slow = _rates()
     d.step(
-        "At the same bound, the two rates of steady precession are equal at the vertical.",
+        r"At the bound $p_\psi^2 = 4 A W c_3$, the two rates of steady precession are equal at the vertical.",
         (A * (fast - slow)).subs(THETA, 0) ** 2,
         P_PSI**2 - 4 * A * W * ARM,
         because=r"$\cos 0 = 1$",

@@ -82,7 +82,7 @@ def _nutation(d: Derivation) -> None:
     speed = rate(HEIGHT, along)
     d.notation({"u": HEIGHT}, along)
     d.step(
-        "The rate of this height agrees with the cubic polynomial.",
+        "The square of the rate of this height equals the cubic polynomial.",
         speed**2,
         cubic(HEIGHT),
         because=r"$u - u_1$, $u_2 - u$ and $u_3 - u$ are the squares of sn, cn and dn, times constants",
@@ -91,7 +91,8 @@ def _nutation(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        "The acceleration of this height agrees too. This excludes a solution that stays where the rate is zero.",
+        "The acceleration of this height is half the derivative of the cubic polynomial, as it must be. This excludes "
+        "a solution that stays where the rate is zero.",
         rate(speed, along),
         cubic(u).diff(u).subs(u, HEIGHT) / 2,
         because="the previous step is differentiated and divided by $\\dot u$; the result is proven separately",
@@ -160,7 +161,7 @@ def _attitude(d: Derivation) -> None:
                         rate(sin(THETA / 2), {THETA: symbols.dtheta}) / sin(THETA / 2)])  # fmt: skip
     d.notation({"u": u, r"\dot u": du})
     d.step(
-        "The logarithms of the absolute values have these rates.",
+        r"The logarithms of $|\alpha|$ and $|\beta|$ have these rates.",
         logarithm,
         Matrix([du / (2 * (1 + u)), -du / (2 * (1 - u))]),
         because=r"$\cos^2 \tfrac\theta2 = \tfrac12 (1 + u)$, $\sin^2 \tfrac\theta2 = \tfrac12 (1 - u)$",

@@ -107,7 +107,7 @@ def _separatrix(d: Derivation) -> None:
     along = {h: speed * (1 - h**2)}
     d.notation({"u": height, "h": h}, along)
     d.step(
-        "The rate of this height agrees with the cubic polynomial.",
+        "The square of the rate of this height equals the cubic polynomial of the heavy top.",
         rate(height, along) ** 2,
         cubic(height).subs(both),
         because="$u - 1$ is a double factor of the cubic",
@@ -115,7 +115,7 @@ def _separatrix(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
     )
     d.step(
-        "The acceleration of this height agrees too.",
+        "The acceleration of this height is half the derivative of the cubic polynomial, as it must be.",
         rate(rate(height, along), along),
         cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
         because="the acceleration of the height is half the derivative of the cubic",

@@ -99,8 +99,8 @@ def derive() -> Derivation:
         named=r"\omega \cdot (L \times e_3)",
     )
     d.step(
-        "The angles of angular momentum and angular velocity to the symmetry axis determine the two cones. Their "
-        "tangents have a constant ratio.",
+        "The angles of angular momentum and angular velocity to the symmetry axis determine the two cones. The "
+        "tangents of these angles have a constant ratio.",
         squared(Matrix(momentum[:2])) / momentum[2] ** 2,
         (a / c) ** 2 * squared(Matrix(OMEGA[:2])) / symbols.omega_3**2,
         because=r"the transverse part of $L$ is $A$ times the transverse part of $\omega$, the axial part is $C$ times "

@@ -10,7 +10,7 @@ from typing import ClassVar
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError, complaint
 
-__all__ = ["imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
+__all__ = ["BAR", "imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
 
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)

@@ -5,13 +5,13 @@ in each order that books use for them; alpha, beta and gamma in every order.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
 from symrot.checker.context.context import Context
 
-__all__ = ["AXIS_OF_ANGLE", "Order", "has_order", "letter_of_angle", "orders", "place_by_words"]
+__all__ = ["AXIS_OF_ANGLE", "Order", "are_roll_pitch_yaw", "has_order", "letter_of_angle", "orders", "place_by_words"]
 
 FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
@@ -44,6 +44,17 @@ class Order:
 def has_order(sequence: str) -> bool:
     """Return whether all books take phi as the first and psi as the third angle of a sequence: ZXZ, but not ZYX."""
     return bool(sequence) and sequence[0] == sequence[-1]
+
+
+def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
+    """Return whether phi, theta and psi are angles about x, y and z, as next to the rates p, q and r of an aircraft.
+
+    ``places`` maps letters to their places in the sequence. A sequence such as ZXZ has no such angles: return True.
+    """
+    axes = {"phi": "X", "theta": "Y", "psi": "Z"}
+    return has_order(sequence) or all(
+        sequence[place].upper() == axes[letter] for letter, place in places.items() if letter in axes
+    )
 
 
 def letter_of_angle(name: str) -> str:

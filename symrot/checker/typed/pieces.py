@@ -1,5 +1,6 @@
 """Parsing the smallest parts of formulas: numbers, names, calls, brackets and matrices, with indices and primes."""
 
+import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from itertools import pairwise
@@ -97,10 +98,27 @@ class PiecesPart(OpenFunctionsPart):
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
             return True
+        if self.is_conjugate_before_factor():
+            return True
         ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
         return not self.token().spaced and (
             after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))
         )
+
+    def is_conjugate_before_factor(self) -> bool:
+        """Return whether a star, tight to what it follows and before a blank and a name, is no product sign.
+
+        It is the mark of a conjugate if the text has such a mark that no factor follows, as in ``(p q)* = q* p*``, or
+        if the same name follows after another one, as in ``q* v q``.
+        """
+        if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
+            return False
+        before = self.tokens[self.index - 1]
+        has_mark = any(
+            star.text == "*" and star.tight and (after.kind == "end" or after.text in SIGNS)
+            for star, after in pairwise(self.tokens)
+        )
+        return has_mark or (before.kind == "name" and self.token(2).text == before.text)
 
     def is_skew_cross(self, node: Node) -> bool:
         """Return whether a cross directly after square brackets, as in ``[n]x`` or ``[n]×``, means a skew matrix."""
@@ -220,6 +238,11 @@ class PiecesPart(OpenFunctionsPart):
             self.note("S(..) is read as the skew matrix of a vector")
             self.plain = True
             return self.called("skew", token)
+        if self.peek() == "(" and inside[1] == ")" and self.is_matrix_of(word, inside[0]):
+            self.plain = True
+            self.index += 3
+            self.note(f"{word}({inside[0]}) is read as the name {word}")
+            return Node("name", word, (), self.span(token.start))
         if self.peek() == "(" and (inside == ["t", ")"] or not self.is_factor(word)):
             return self.called(word, token)
         if self.peek() == "(":
@@ -227,6 +250,12 @@ class PiecesPart(OpenFunctionsPart):
             if self.token().tight and word not in self.vocabulary.alone and word not in self.vocabulary.vectors:
                 self.note(f"{word}(..) is read as the product of {word} and the bracket")
         return Node("name", word, (), self.span(token.start))
+
+    def is_matrix_of(self, word: str, argument: str) -> bool:
+        """Return whether ``R(q)`` before a factor is the name of a matrix that depends on a quaternion: ``R(q) v``."""
+        after = self.token(3)
+        is_name = re.fullmatch("[A-Z]", word) is not None and argument in ("q", "Q", "p") and argument != "t"
+        return is_name and not self.as_sympy and after.kind == "name" and after.spaced
 
     def is_factor(self, word: str) -> bool:
         """Return whether a name before a bracket is a factor of a product, and not a function with arguments.

@@ -83,22 +83,28 @@ _MEASURED = re.compile(rf"(?<![\w.^])(?<!\*\*)({_VALUE})(\s*/\s*|[ *·⋅]*)({_O
 _PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT}){_NO_LETTER}(?P<power>{_POWER})")
 _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
-    (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "), (r"\\(?:cdot|times)\b", "*"),
-    (r"\\approx\b", "="), (r"\\%", "%"),
+    (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "),
+    (r"\\(?:cdot|times)(?![A-Za-z])", "*"), (r"\\approx(?![A-Za-z])", "="), (r"\\%", "%"),
     (r"\\(theta|phi|psi|alpha|beta|gamma|delta|omega|Omega|Theta|Phi)(?![A-Za-z])", r" \1 "),
-    (r"\\(?:left|right)\b", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi\b", " pi "),
+    (r"\\(?:left|right)(?![A-Za-z])", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi(?![A-Za-z])", " pi "),
     (r"\\(sin|cos|tan)\s*\^\{?-1\}?", r" arc\1 "), (r"\\(a?r?c?(?:sin|cos|tan))(?![A-Za-z])", r" \1 "),
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"), (r"\$", ""),
 )  # fmt: skip
 """LaTeX of numbers with units -> the same in plain text."""
 
+_COMMON_FRACTIONS = {
+    "½": "0.5", "¼": "0.25", "¾": "0.75", "⅕": "0.2", "⅖": "0.4", "⅛": "0.125", "⅓": "(1/3)", "⅔": "(2/3)",
+}  # fmt: skip
 _TEMPERATURE = re.compile(r"\d\s*(°\s*[CF])(?!\w)")
 _SUPERSCRIPTS = {"²": 2, "³": 3, "⁻¹": -1, "⁻²": -2, "⁻³": -3}
 _OTHER_NAME = re.compile(r"(?<![\w.])[^\W\d_]\w*")
 _FUNCTIONS = (
     "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "arcsin", "arccos", "arctan", "exp", "abs", "pi", "π",
 )  # fmt: skip
-_PLAUSIBLE = ("m", "s", "N", "J", "W", "A", "K", "h", "d", "m/s", "m/s^2", "N m", "N s", "N m s", "1/s", "J s", "m^2")
+_PLAUSIBLE = (
+    "m", "s", "N", "J", "W", "A", "K", "h", "d", "m/s", "m/s^2", "N m", "N s", "N m s", "1/s", "J s", "m^2", "m^3",
+    "s^2", "m^2/s^2", "1/s^2", "s^-1", "s^-2", "m s^-1", "m s^-2", "N/m", "J/s",
+)  # fmt: skip
 
 
 LARGEST_IN_NOTE = 10**6
@@ -202,6 +208,8 @@ def _plain(source: str) -> str | None:
     plain = source
     for pattern, instead in _LATEX:
         plain = re.sub(pattern, instead, plain)
+    for sign, value in _COMMON_FRACTIONS.items():
+        plain = plain.replace(sign, value)
     return None if "\\" in plain or "{" in plain else plain.replace("−", "-")
 
 
@@ -240,6 +248,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
     if typed == {"°"} and not re.search(rf"(^|=)\s*-?{_NUMBER}\s*°\s*($|=)", plain):
         return None  # an angle in degrees inside of a formula
     names = [name for name in _OTHER_NAME.findall(text) if name not in _FUNCTIONS and name not in units]
+    names = [name for name in names if name not in _SUPERSCRIPTS]
     if not units or (are_factors and not has_long) or not _only_units(text, names, units, has_long):
         return None
     return Measured(plain, text, units, has_long or not names)
@@ -288,7 +297,7 @@ def unit_beside_letters(source: str) -> str:
             continue
         typed = {piece["unit"] for piece in _PIECE.finditer(whole[3])}
         others = {name for other in sides[:place] + sides[place + 1 :] for name in re.findall(r"[^\W\d_]", other)}
-        if len(typed) > 1 and _unit_product(whole[3]).text in _PLAUSIBLE and not typed & others:
+        if len(typed) > 1 and _is_plausible(_unit_product(whole[3])) and not typed & others:
             return side.strip()
     return ""
 
@@ -299,11 +308,19 @@ def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct
     if names and (left is None or names != [left[1]]):
         return False
     if names:
-        return has_long or all(unit.text in _PLAUSIBLE for unit in units.values())
+        return has_long or all(_is_plausible(unit) for unit in units.values())
     if not has_long and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
         return False  # the weight m g
     sides = re.split(r"==?", text)
     return has_long or (len(sides) > 1 and all("unit_" in side for side in sides))
+
+
+def _is_plausible(unit: UnitProduct) -> bool:
+    """Return whether a product of single letters is usually a unit, such as m/s²."""
+    plain = unit.text
+    for digits, power in _SUPERSCRIPTS.items():
+        plain = plain.replace(digits, f"^{power}")
+    return plain.replace("·", " ").replace("⋅", " ") in _PLAUSIBLE
 
 
 def _pieces(text: str) -> Iterator[tuple[str, int]]:

@@ -32,7 +32,7 @@ def rotated_point(random: Random) -> Problem:
     formula = parts[row].expand()
     name = f"{'xyz'[row]}'"
     return Problem(
-        "A rotation about an oblique axis",
+        "A rotation about an inclined axis",
         rf"The point $(x, y, z)$ is rotated by $\alpha$ about the axis through the origin along $n = {text}$.",
         r"Rodrigues' formula: $r' = r\cos\alpha + (n \times r)\sin\alpha + n (n \cdot r)(1 - \cos\alpha)$.",
         (ANGLE, *POINT),
@@ -90,7 +90,7 @@ def rodrigues_parameter(random: Random) -> Problem:
         "A Rodrigues parameter",
         rf"A body is rotated by $\alpha$ about the axis along $n = {text}$. Its Rodrigues vector is $g = n "
         r"\tan(\alpha/2)$.",
-        "Take the component of the axis, times the tangent of half the angle.",
+        "Multiply the component of the axis by the tangent of half the angle.",
         (ANGLE,),
         (Line("The skew part of the rotation matrix, divided by one plus the trace.", entry, formula, name),),
         (Asked(name, f"component {place + 1} of the Rodrigues vector", formula, ""),),

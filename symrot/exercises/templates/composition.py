@@ -32,7 +32,14 @@ def point_turned_twice(random: Random) -> Problem:
         f"fixed axis ${two}$.",
         "Rotations about fixed axes multiply from the left: the matrix of the later rotation is the left factor.",
         tuple(each for each in (FIRST, SECOND, *POINT) if each.symbol in used),
-        (Line("The first rotation, and then the second.", by_steps[row], formula, name),),
+        (
+            Line(
+                "The matrix of the second rotation times the vector after the first rotation.",
+                by_steps[row],
+                formula,
+                name,
+            ),
+        ),
         (Asked(name, f"the coordinate of the point along ${AXES[row]}$ afterwards", formula, "m"),),
     )
 
@@ -90,7 +97,7 @@ def relative_rotation(random: Random) -> Problem:
         r"attitude. The rotation from one to the other has the angle $\alpha$.",
         r"The relative rotation is $R_1^{\mathsf T} R_2$, and its trace is $1 + 2\cos\alpha$.",
         (FIRST, SECOND),
-        (Line("Half of the trace less one.", (relative.trace() - 1) / 2, cosine, r"\cos\alpha"),),
+        (Line("The trace minus one, divided by two.", (relative.trace() - 1) / 2, cosine, r"\cos\alpha"),),
         (Asked(r"\cos\alpha", "the cosine of the angle between the attitudes", cosine, ""),),
     )
 

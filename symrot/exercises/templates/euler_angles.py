@@ -96,7 +96,7 @@ def matrix_entry(random: Random) -> Problem:
     entry = matrix[row, column]
     return Problem(
         f"An entry of the rotation matrix of the angles {sequence}",
-        MEANING.format(sequence) + " The matrix $R$ takes components in the body to components in space.",
+        MEANING.format(sequence) + " The matrix $R$ maps components in the body to components in space.",
         "Multiply the three elementary rotations in the order of the sequence, from left to right.",
         _quantities(entry),
         (Line("The entry of the product of the three rotations.", _product(sequence)[row, column], entry, name),),
@@ -123,7 +123,7 @@ def space_direction_of_axis(random: Random) -> Problem:
     entry = dcm("ZXZ")[row, 2]
     name = f"e_{{3,{'xy'[row]}}}"
     return Problem(
-        "Where the axis of a top points",
+        "The direction of a top's axis",
         r"A top has the precession $\phi$, the nutation $\theta$ and the spin $\psi$ (sequence ZXZ). Its axis is "
         "the body axis 3.",
         "The components of a body axis in space are a column of the rotation matrix.",
@@ -140,9 +140,9 @@ def speed_of_rotation(random: Random) -> Problem:
     square = normal_form((omega.T * omega)[0].expand())
     speed = sqrt(square)
     return Problem(
-        f"How fast a body rotates, from the angles {sequence}",
+        f"The rate of rotation from the angles {sequence}",
         MEANING.format(sequence),
-        "Square and add the three components of the angular velocity; the spin drops out of most terms.",
+        "Square and add the three components of the angular velocity; most terms with the spin cancel.",
         _quantities(square),
         (
             Line("The sum of the squares of the components.", (omega.T * omega)[0], square, r"|\omega|^2"),
@@ -159,7 +159,7 @@ def vertical_in_body(random: Random) -> Problem:
     entry = dcm(sequence)[2, row]
     name = f"\\gamma_{row + 1}"
     return Problem(
-        "The vertical, seen from an aircraft",
+        "The vertical in the axes of an aircraft",
         r"Yaw $\phi$, pitch $\theta$ and roll $\psi$ are intrinsic Euler angles of the sequence ZYX; the space "
         "axis $z$ is vertical.",
         "Components in the body follow from components in space by the transpose of the rotation matrix.",

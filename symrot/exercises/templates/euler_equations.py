@@ -45,12 +45,12 @@ def free_acceleration(random: Random) -> Problem:
         _used(acceleration),
         (
             Line(
-                "Euler's equation of this axis is satisfied.",
+                "Euler's equation for this axis is satisfied.",
                 _balance(row, acceleration),
                 0,
                 rf"{'ABC'[row]}\,\dot\omega_{row + 1} + (\omega \times I\omega)_{row + 1}",
             ),
-            Line("It is solved for the angular acceleration.", acceleration, acceleration, name),
+            Line("The equation is solved for the angular acceleration.", acceleration, acceleration, name),
         ),
         (Asked(name, f"the angular acceleration about axis {row + 1}", acceleration, "rad/s^2"),),
     )
@@ -68,12 +68,12 @@ def driven_acceleration(random: Random) -> Problem:
         _used(acceleration),
         (
             Line(
-                "Euler's equation of this axis is satisfied.",
+                "Euler's equation for this axis is satisfied.",
                 _balance(row, acceleration),
                 (tau_1, tau_2, tau_3)[row],
                 rf"{'ABC'[row]}\,\dot\omega_{row + 1} + (\omega \times I\omega)_{row + 1}",
             ),
-            Line("It is solved for the angular acceleration.", acceleration, acceleration, name),
+            Line("The equation is solved for the angular acceleration.", acceleration, acceleration, name),
         ),
         (Asked(name, f"the angular acceleration about axis {row + 1}", acceleration, "rad/s^2"),),
     )
@@ -152,7 +152,7 @@ def unbalanced_shaft(random: Random) -> Problem:
     name = rf"\tau_{'xy'[row]}"
     return Problem(
         "An unbalanced shaft",
-        r"A rotor turns at the constant rate $\Omega$ about the axis $z$ of its bearings. Its product of inertia "
+        r"A rotor rotates at the constant rate $\Omega$ about the axis $z$ of its bearings. Its product of inertia "
         rf"$I_{{{'yx'[row]}z}}$ is not zero; products have the minus sign, $I_{{xz}} = -\int x z\,dm$.",
         r"In axes fixed in the rotor $\dot\omega = 0$, so that the bearings supply $\tau = \omega \times I \omega$.",
         (

@@ -13,12 +13,11 @@ T = Symbol("T", positive=True)  # kinetic energy; the checker takes E for anothe
 OMEGA = Matrix((omega_1, omega_2, omega_3))
 TRANSVERSE = quantity(A, "2 3 4 5 6 8 10", "kg m^2", "transverse moment")
 AXIAL = quantity(C, "1 2 3 4 5 6 9 12", "kg m^2", "moment about the axis")
-ACROSS = quantity(omega_1, "0.5 1 2 3 4", "rad/s", "component across the axis")
+ACROSS = quantity(omega_1, "0.5 1 2 3 4", "rad/s", "component perpendicular to the axis")
 SPIN = quantity(omega_3, "1 2 3 4 5 6 8 10", "rad/s", "component along the axis")
 SYMMETRIC = (
-    r"A free symmetric body has the moments $A$, $A$, $C$. Its angular velocity has the component $\omega_3$ "
-    "along the axis of "
-    r"symmetry and $\omega_1$ across it."
+    r"A free symmetric body has the moments $A$, $A$, $C$. Its angular velocity has the component $\omega_3$ along "
+    r"the symmetry axis and the component $\omega_1$ perpendicular to it."
 )
 
 
@@ -57,7 +56,7 @@ def space_precession(random: Random) -> Problem:
         (TRANSVERSE, AXIAL, ACROSS, SPIN),
         (
             Line(
-                "The square of the angular momentum, divided by that of the moment $A$.",
+                "The square of the angular momentum divided by the square of the moment $A$.",
                 square,
                 formula**2,
                 r"\dot\phi^2",
@@ -78,7 +77,7 @@ def _cone(name: str, words: str, tangent: Expr, left: Expr, law: str) -> Problem
         tuple(each for each in (TRANSVERSE, AXIAL, ACROSS, SPIN) if each.symbol in used),
         (
             Line(
-                "The tangent: the component across the axis over the component along it.",
+                "The tangent is the component perpendicular to the axis divided by the component along it.",
                 left,
                 tangent,
                 rf"\tan {name}",
@@ -92,14 +91,17 @@ def _cone(name: str, words: str, tangent: Expr, left: Expr, law: str) -> Problem
 
 def body_cone(random: Random) -> Problem:
     """Return a problem that asks for the half angle of the body cone of a free symmetric body."""
-    law = "The body cone is swept by the angular velocity about the axis of symmetry."
+    law = "The angular velocity moves on the body cone about the symmetry axis."
     return _cone(r"\beta", "the body cone", omega_1 / omega_3, OMEGA[0] / OMEGA[2], law)
 
 
 def angle_of_momentum(random: Random) -> Problem:
     """Return a problem that asks for the nutation, the angle between angular momentum and symmetry axis."""
     momentum = diag(A, A, C) * Matrix((omega_1, 0, omega_3))
-    law = "The angular momentum has the components $A\\omega_1$ across the axis and $C\\omega_3$ along it."
+    law = (
+        r"The angular momentum has the component $A\omega_1$ perpendicular to the axis and the component "
+        r"$C\omega_3$ along it."
+    )
     words = "the cone on which the axis moves about the angular momentum"
     return _cone(r"\theta", words, A * omega_1 / (C * omega_3), momentum[0] / momentum[2], law)
 
@@ -183,7 +185,7 @@ def polhode_constants(random: Random) -> Problem:
         "Where a polhode crosses a plane",
         "A free body has the moments $A > B > C$, the kinetic energy $T$ and the angular momentum $H$. At one "
         r"moment $\omega_2 = 0$.",
-        r"Two equations are left: $A\omega_1^2 + C\omega_3^2 = 2T$ and $A^2\omega_1^2 + C^2\omega_3^2 = H^2$.",
+        r"Two equations remain: $A\omega_1^2 + C\omega_3^2 = 2T$ and $A^2\omega_1^2 + C^2\omega_3^2 = H^2$.",
         (
             _moments()[0],
             _moments()[2],
@@ -214,7 +216,7 @@ def wobble_period(random: Random) -> Problem:
         r"A free symmetric body has the moments $A$, $A$, $C$ with $C > A$ and spins with $\omega_3$. Its angular "
         "velocity goes around "
         "the axis in the body, as the pole of the Earth does.",
-        r"The rate of this motion is $\lambda = \omega_3 (C - A)/A$; the period is one turn over the rate.",
+        r"The rate of this motion is $\lambda = \omega_3 (C - A)/A$; the period is $2\pi$ divided by the rate.",
         (
             quantity(A, "8 9 10 12", "kg m^2", "transverse moment"),
             quantity(C, "10 11 12 14 15", "kg m^2", "moment about the axis"),
@@ -222,7 +224,7 @@ def wobble_period(random: Random) -> Problem:
         ),
         (
             Line("The rate follows from Euler's equations.", rates[1] / omega_1, omega_3 * (C - A) / A, r"\lambda"),
-            Line("One turn, divided by the rate.", 2 * pi * omega_1 / rates[1], period, "P"),
+            Line(r"The angle $2\pi$ divided by the rate.", 2 * pi * omega_1 / rates[1], period, "P"),
         ),
         (Asked("P", "the period in the body", period, "s"),),
         lambda values: values[A] < values[C],

@@ -13,10 +13,9 @@ PLANET = quantity(Z_P, "12 15 18 20 24", "", "teeth of the planet")
 SPEED = "300 600 900 1200 1500 1800"
 TRAIN = (
     r"A planetary train has a sun with $Z_S$ teeth and a ring with $Z_R$ teeth. Their rates are $\omega_S$ and "
-    r"$\omega_R$, that of the "
-    r"carrier is $\omega_C$."
+    r"$\omega_R$; the carrier has the rate $\omega_C$."
 )
-LAW = r"Seen from the carrier: $Z_S(\omega_S - \omega_C) = -Z_R(\omega_R - \omega_C)$."
+LAW = r"Relative to the carrier: $Z_S(\omega_S - \omega_C) = -Z_R(\omega_R - \omega_C)$."
 CONTACT = r"Z_S(\omega_S - \omega_C) + Z_R(\omega_R - \omega_C)"
 
 
@@ -42,7 +41,7 @@ def _train(
         (SUN, RING, quantity(driving, SPEED, "rpm", "speed of the driving member")),
         (
             Line("The teeth in contact have the same speed.", contact.subs(driven, formula), 0, CONTACT),
-            Line("It is solved for the rate.", rate, formula, name),
+            Line("The equation is solved for the rate.", rate, formula, name),
         ),
         (Asked(name, asked, formula, "rpm"),),
         lambda values: values[Z_S] < values[Z_R],
@@ -107,7 +106,7 @@ def both_driven(random: Random) -> Problem:
         ),
         (
             Line("The teeth in contact have the same speed.", _contact().subs(omega_C, formula), 0, CONTACT),
-            Line("It is solved for the rate of the carrier.", rate, formula, r"\omega_C"),
+            Line("The equation is solved for the rate.", rate, formula, r"\omega_C"),
         ),
         (Asked(r"\omega_C", "the rate of the carrier", formula, "rpm"),),
     )
@@ -124,15 +123,17 @@ def planet_rate(random: Random) -> Problem:
     )
     formula = -Z_S * omega_S / (2 * Z_P)
     return Problem(
-        "How fast the planet turns",
-        "A planetary train has a sun with $Z_S$ teeth, planets with $Z_P$ teeth and a fixed ring, which has $Z_S "
-        "+ 2 Z_P$ teeth. The sun "
-        r"turns at $\omega_S$.",
+        "The rate of a planet",
+        "A planetary train has a sun with $Z_S$ teeth, planets with $Z_P$ teeth and a fixed ring, which has $Z_S + 2 "
+        r"Z_P$ teeth. The sun rotates at $\omega_S$.",
         r"The planet rolls on the fixed ring and on the sun: $Z_S(\omega_S - \omega_C) = -Z_P(\omega_P - \omega_C)$.",
         (SUN, PLANET, quantity(omega_S, SPEED, "rpm", "speed of the sun")),
         (
             Line(
-                "The rate of the carrier is put in, and the number of teeth of the ring.", planet, formula, r"\omega_P"
+                "The rate of the carrier and the number of teeth of the ring are inserted.",
+                planet,
+                formula,
+                r"\omega_P",
             ),
         ),
         (Asked(r"\omega_P", "the rate of the planets in space", formula, "rpm"),),

@@ -27,16 +27,15 @@ def wheel_on_cord(random: Random) -> Problem:
     (rate,) = solve(torque - m * g * a, Omega)
     return Problem(
         "A bicycle wheel on a cord",
-        r"A wheel, a thin ring of mass $m$ and radius $R$, spins with $\omega_3$ on a level axle. The axle hangs "
-        "from a cord at the "
-        "distance $a$ from the wheel.",
+        r"A wheel, a thin ring of mass $m$ and radius $R$, spins with $\omega_3$ on a horizontal axle. The axle hangs "
+        "from a cord at the distance $a$ from the wheel.",
         r"The torque of gravity, $m g a$, equals the rate of the angular momentum, $I \omega_3 \Omega$.",
         (RADIUS, SPIN, quantity(a, "50 100 150 200", "mm", "distance"), GRAVITY),
         (
             Line(
                 "The rate of the angular momentum of the spin.", torque, m * R**2 * Omega * omega_3, r"I\omega_3\Omega"
             ),
-            Line("Equal to the torque of gravity; the mass cancels.", rate, g * a / (R**2 * omega_3), r"\Omega"),
+            Line("It equals the torque of gravity; the mass cancels.", rate, g * a / (R**2 * omega_3), r"\Omega"),
         ),
         (Asked(r"\Omega", "the rate of precession", g * a / (R**2 * omega_3), "rad/s"),),
     )
@@ -48,13 +47,12 @@ def bearing_torque(random: Random) -> Problem:
     torque = _gyroscopic_torque(moment)[1]
     formula = m * R**2 * omega_3 * Omega / 2
     return Problem(
-        "A rotor in a vehicle that turns",
+        "A rotor in a turning vehicle",
         r"The rotor of a motor is a uniform disk of mass $m$ and radius $R$ that spins with $\omega_3$ about a "
-        "level axis. The vehicle "
-        r"turns at $\Omega$ about the vertical.",
+        r"horizontal axis. The vehicle rotates at $\Omega$ about the vertical.",
         r"The bearings supply the rate of the angular momentum, $\Omega \times I\omega$.",
         (MASS, RADIUS, SPIN, TURN),
-        (Line("The moment of a disk, times both rates.", torque, formula, "M"),),
+        (Line("The moment of a disk times the rates of spin and vehicle.", torque, formula, "M"),),
         (Asked("M", "the torque on the bearings", formula, "N m"),),
     )
 
@@ -67,19 +65,19 @@ def bearing_forces(random: Random) -> Problem:
     return Problem(
         "The bearings of a ship's turbine",
         r"The rotor of a turbine is a uniform disk of mass $m$ and radius $R$. It spins with $\omega_3$ in two "
-        "bearings at the distance "
-        r"$L$ from each other. The ship turns at $\Omega$ about an axis across that of the rotor.",
+        r"bearings at the distance $L$ from each other. The ship rotates at $\Omega$ about an axis perpendicular to "
+        "the axis of the rotor.",
         "The gyroscopic torque is a couple of two forces, one at each bearing.",
         (
             quantity(m, "50 100 200 400", "kg", "mass"),
             quantity(R, "200 250 400 500", "mm", "radius"),
             SPIN,
             TURN,
-            quantity(L, "0.5 1 1.5 2", "m", "distance of the bearings"),
+            quantity(L, "0.5 1 1.5 2", "m", "distance between the bearings"),
         ),
         (
             Line("The gyroscopic torque.", torque, m * R**2 * omega_3 * Omega / 2, "M"),
-            Line("Divided by the distance of the bearings.", torque / L, formula, "F"),
+            Line("The torque divided by the distance between the bearings.", torque / L, formula, "F"),
         ),
         (Asked("F", "the gyroscopic force on each bearing", formula, "N"),),
     )
@@ -94,7 +92,7 @@ def reaction_wheel(random: Random) -> Problem:
         "A satellite at rest has the moment $A$ about an axis, without its wheel. The wheel has the moment $C$ "
         "about the same axis. A motor "
         r"brings the wheel to the rate $\omega_3$ relative to the satellite.",
-        "No torque acts from outside, so the total angular momentum stays zero.",
+        "No external torque acts, so the total angular momentum stays zero.",
         (
             quantity(A, "9.5 19.5 49.5 99 199", "kg m^2", "moment of the satellite"),
             quantity(C, "0.5 1", "kg m^2", "moment of the wheel"),
@@ -107,7 +105,7 @@ def reaction_wheel(random: Random) -> Problem:
                 0,
                 r"A\Omega + C(\Omega + \omega_3)",
             ),
-            Line("It is solved for the rate of the satellite.", rate, formula, r"\Omega"),
+            Line("The equation is solved for the rate.", rate, formula, r"\Omega"),
         ),
         (Asked(r"\Omega", "the rate of the satellite", formula, "rad/s"),),
     )
@@ -120,10 +118,9 @@ def tilted_wheel(random: Random) -> Problem:
     formula = 2 * C * omega_3 / A
     return Problem(
         "A person on a turntable",
-        "A person stands at rest on a turntable and holds a wheel with a vertical axis, moment $C$, that spins "
-        r"with $\omega_3$ in space. "
-        r"Then the person turns the wheel over, so that it spins with $\omega_3$ in the opposite sense. Person and "
-        "table have the moment $A$.",
+        "A person stands at rest on a turntable and holds a wheel with a vertical axis and the moment $C$ that spins "
+        r"with $\omega_3$ in space. Then the person turns the wheel over, so that it spins with $\omega_3$ in the "
+        "opposite direction. Person and table have the moment $A$.",
         "The vertical component of the angular momentum does not change.",
         (
             quantity(A, "2 4 5 8", "kg m^2", "moment of person and table"),
@@ -132,7 +129,7 @@ def tilted_wheel(random: Random) -> Problem:
         ),
         (
             Line("The angular momentum before and after.", A * formula + after, before, r"A\Omega - C\omega_3"),
-            Line("It is solved for the rate of the table.", rate, formula, r"\Omega"),
+            Line("The equation is solved for the rate.", rate, formula, r"\Omega"),
         ),
         (Asked(r"\Omega", "the rate of the table afterwards", formula, "rad/s"),),
     )

@@ -12,9 +12,8 @@ from symrot.kinematics.euler import rate_jacobian
 from symrot.symbols import A, C, angle_rates, dphi, dpsi, dtheta, g, h, m, omega_3, theta
 
 ABOUT = (
-    "A symmetric top of mass $m$ turns about a fixed point of its axis, at the distance $h$ from the centre "
-    "of mass. Its moments about "
-    r"this point are $A$ across the axis and $C$ about it."
+    "A symmetric top of mass $m$ rotates about a fixed point of its axis, at the distance $h$ from the centre of "
+    "mass. Its moments about this point are $C$ about the axis and $A$ about a transverse axis."
 )
 MASS = quantity(m, "0.2 0.4 0.5", "kg", "mass")
 DISTANCE = quantity(h, "30 40 50 60 80", "mm", "distance of the centre of mass")
@@ -72,7 +71,7 @@ def spin_for_precession(random: Random) -> Problem:
                 0,
                 r"m g h + A\dot\phi^2\cos\theta - C\omega_3\dot\phi",
             ),
-            Line(r"It is solved for the rate about the axis.", spin, formula, r"\omega_3"),
+            Line("The equation is solved for the rate about the axis.", spin, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the rate of rotation about the axis", formula, "rad/s"),),
         _is_possible,
@@ -85,13 +84,13 @@ def level_precession(random: Random) -> Problem:
     (rate,) = solve(level, dphi)
     formula = m * g * h / (C * omega_3)
     return Problem(
-        "A top with a level axis",
+        "A top with a horizontal axis",
         ABOUT + r" It spins with $\omega_3$ and precesses steadily with its axis level.",
-        r"With a level axis the condition of steady precession is $C\omega_3\dot\phi = m g h$.",
+        r"With a horizontal axis the condition of steady precession is $C\omega_3\dot\phi = m g h$.",
         _quantities(formula),
         (
             Line("The condition of steady precession.", level.subs(dphi, formula), 0, r"m g h - C\omega_3\dot\phi"),
-            Line("It is solved for the rate of precession.", rate, formula, r"\dot\phi"),
+            Line("The equation is solved for the rate of precession.", rate, formula, r"\dot\phi"),
         ),
         (Asked(r"\dot\phi", "the rate of precession", formula, "rad/s"),),
         _is_possible,
@@ -132,7 +131,7 @@ def sleeping_top(random: Random) -> Problem:
         _quantities(formula),
         (
             Line(
-                "At the limit the two precessions of a small tilt become one.",
+                "At the limit, the two rates of precession at a small tilt are equal.",
                 discriminant.subs(omega_3, formula),
                 0,
                 r"C^2\omega_3^2 - 4 A m g h",
@@ -153,7 +152,7 @@ def momentum_about_vertical(random: Random) -> Problem:
         "The angular momentum about the vertical",
         ABOUT + r" It precesses at $\dot\phi$ at the angle $\theta$ to the vertical and rotates with $\omega_3$ about "
         "its axis.",
-        "Add the vertical components of the angular momentum across the axis and along it.",
+        "Add the vertical components of the angular momentum along the axis and perpendicular to it.",
         _quantities(formula),
         (Line("The derivative of the kinetic energy by the rate of precession.", momentum, formula, r"p_\phi"),),
         (Asked(r"p_\phi", "the angular momentum about the vertical", formula, "kg m^2/s"),),

@@ -18,9 +18,8 @@ BLOW = quantity(J, "1 2 3 4 5 6 8", "N s", "impulse")
 PLACE = quantity(d, "0.05 0.1 0.15 0.2 0.25", "m", "distance")
 ROD = solid("rod").inertia[0, 0]
 STRUCK = (
-    "A thin uniform rod of mass $m$ and length $L$ lies at rest on smooth ice. A blow with the impulse $J$ "
-    "hits it across, at the "
-    "distance $d$ from its centre."
+    "A thin uniform rod of mass $m$ and length $L$ lies at rest on smooth ice. A blow with the impulse $J$, "
+    "perpendicular to the rod, hits it at the distance $d$ from its centre."
 )
 LAW = r"The impulse changes the momentum by $J$, and the angular momentum about the centre of mass by $J d$."
 
@@ -59,7 +58,14 @@ def struck_place(random: Random) -> Problem:
         STRUCK,
         LAW + " The speed of the place is that of the centre plus that of the rotation.",
         (MASS, LENGTH, BLOW, PLACE),
-        (Line("The speed of the centre, and of the rotation at the place.", speed, formula, "u"),),
+        (
+            Line(
+                "The speed of the centre plus the speed of the point in the rotation about the centre.",
+                speed,
+                formula,
+                "u",
+            ),
+        ),
         (Asked("u", "the speed of the place that was struck", formula, "m/s"),),
         _fits,
     )
@@ -74,7 +80,7 @@ def energy_of_blow(random: Random) -> Problem:
         STRUCK,
         LAW + " The energy has two parts, of the centre and of the rotation.",
         (MASS, LENGTH, BLOW, PLACE),
-        (Line("The energy of the centre and of the rotation.", energy, formula, "T"),),
+        (Line("The energy of the motion of the centre plus the energy of the rotation.", energy, formula, "T"),),
         (Asked("T", "the kinetic energy after the blow", formula, "J"),),
         _fits,
     )
@@ -91,12 +97,13 @@ def resting_point(random: Random) -> Problem:
         (LENGTH, PLACE),
         (
             Line("At this distance the speeds cancel.", (J / m - _rate() * h).subs(h, formula), 0, "v - \\omega x"),
-            Line("It is solved for the distance.", point, formula, "x"),
+            Line("The equation is solved for the distance.", point, formula, "x"),
         ),
         (
             Asked(
                 "x",
-                "the distance from the centre, behind it, of the point that is at rest just after the blow",
+                "the distance from the centre of the point that is at rest just after the blow, on the side away from "
+                "the blow",
                 formula,
                 "m",
             ),
@@ -144,9 +151,8 @@ def percussion_of_racket(random: Random) -> Problem:
         "The sweet spot of a bat",
         "A bat is a thin uniform rod of length $L$ that is held at one end. A blow at the sweet spot gives the "
         "hand no jolt.",
-        "At the centre of percussion a blow gives exactly the speed of the centre that the rotation about the "
-        "hand needs.",
+        "A blow at the centre of percussion gives the centre of mass exactly the speed of a rotation about the hand.",
         (LENGTH,),
-        (Line("The moment about the end, divided by the mass and the distance of the centre.", place, formula, "x"),),
+        (Line("The moment about the end divided by the mass and the distance of the centre.", place, formula, "x"),),
         (Asked("x", "the distance of the sweet spot from the hand", formula, "m"),),
     )

@@ -44,10 +44,9 @@ def rod_about_point(random: Random) -> Problem:
     distance = L / random.choice((3, 4, 6))
     moment, lines = _about(solid("rod"), (0, 0, distance), 0, distance)
     return Problem(
-        "A rod on an axle off its centre",
-        "A thin uniform rod of mass $m$ and length $L$ turns about an axle that crosses it at right angles, at "
-        f"$L/{L / distance}$ "
-        "from its centre.",
+        "A rod on an axle beside its centre",
+        f"A thin uniform rod of mass $m$ and length $L$ rotates about a perpendicular axle at $L/{L / distance}$ from "
+        "its centre.",
         PARALLEL,
         (MASS, LENGTH),
         lines,
@@ -120,7 +119,7 @@ def box_about_edge(random: Random) -> Problem:
     written = written_sum(body.inertia[2, 2], m * (a / 2) ** 2, m * (b / 2) ** 2)
     return Problem(
         "A crate that tips about its edge",
-        "A uniform crate of mass $m$ tips about one of its edges. Its sides across the edge are $a$ and $b$.",
+        "A uniform crate of mass $m$ tips about one of its edges. Its sides perpendicular to the edge are $a$ and $b$.",
         PARALLEL,
         (MASS, quantity(a, LENGTHS, "m", "side"), quantity(b, LENGTHS, "m", "side")),
         chain("I_O", "The parallel axis theorem, from the centre of mass to the edge.", moment, written, moment, ADD),
@@ -148,8 +147,8 @@ def cone_about_apex(random: Random) -> Problem:
     written = written_sum(body.inertia[0, 0], m * (h - body.center_of_mass[2]) ** 2)
     return Problem(
         "A cone about its apex",
-        "A uniform cone of mass $m$, base radius $R$ and height $h$ swings about an axis through its apex, across "
-        "its own axis.",
+        "A uniform cone of mass $m$, base radius $R$ and height $h$ swings about an axis through its apex that is "
+        "perpendicular to its own axis.",
         PARALLEL + " The centre of mass is at $3h/4$ from the apex.",
         (MASS, RADIUS, quantity(h, LENGTHS, "m", "height")),
         chain("I_O", "The parallel axis theorem, from the centre of mass to the apex.", moment, written, moment, ADD),
@@ -194,9 +193,10 @@ def drilled_disk(random: Random) -> Problem:
         "A washer",
         "A thin uniform washer of mass $m$ has a hole of radius $R_1$ and the outer radius $R_2$. Consider its "
         "axis of symmetry.",
-        "Subtract the moment of the disk that was cut out from the moment of the whole disk; masses are as areas.",
+        "Subtract the moment of the disk that was cut out from the moment of the whole disk; the masses are "
+        "proportional to the areas.",
         (MASS, quantity(R_1, RADII, "mm", "radius of the hole"), quantity(R_2, RADII, "mm", "outer radius")),
-        chain("I_{zz}", "The whole disk, less the disk that was cut out.", moment, written, moment),
+        chain("I_{zz}", "The whole disk minus the disk that was cut out.", moment, written, moment),
         (Asked("I_{zz}", "the moment of inertia about the axis", moment, "kg m^2"),),
         lambda values: values[R_1] < values[R_2],
     )
@@ -236,7 +236,7 @@ def product_of_two_masses(random: Random) -> Problem:
         "A small mass $m_1$ is at the point $(a, b)$ and a small mass $m_2$ at $(-b, c)$ of the $x$-$y$ plane, "
         "about the origin. "
         "Here $I_{xy} = -\\sum m x y$.",
-        "Sum $-m x y$ over the masses, with the signs of the coordinates.",
+        "Add $-m x y$ for both masses, with the signs of the coordinates.",
         (
             quantity(m_1, MASSES, "kg", "first mass"),
             quantity(m_2, MASSES, "kg", "second mass"),
@@ -264,7 +264,7 @@ def principal_moment(random: Random) -> Problem:
     return Problem(
         "A principal moment of inertia",
         "In its own plane a plate has the moments $I_{xx}$, $I_{yy}$ and the product $I_{xy}$.",
-        "A principal moment $I$ makes the determinant of the tensor less $I$ times the identity zero.",
+        "For a principal moment $I$, the determinant of the tensor minus $I$ times the unit matrix is zero.",
         (
             quantity(I_xx, "4 5 6 7 8 9 10 12", "kg m^2", "moment"),
             quantity(I_yy, "1 2 3 4 5 6", "kg m^2", "moment"),
@@ -290,7 +290,7 @@ def radius_of_gyration(random: Random) -> Problem:
     radius = sqrt(moment / m)
     return Problem(
         "A radius of gyration",
-        "A thin uniform rod of length $L$ turns about an axis through its end, normal to the rod.",
+        "A thin uniform rod of length $L$ rotates about an axis through its end, normal to the rod.",
         "The radius of gyration $k$ is defined by $I_O = m k^2$.",
         (LENGTH,),
         (

@@ -13,9 +13,8 @@ ROD = quantity(L, "100 120 150 200 250", "mm", "connecting rod")
 SPEED = quantity(Omega, "300 600 900 1200 1500", "rpm", "speed of the crank")
 ANGLE = quantity(phi, "30 45 60 90 120", "deg", "angle of the crank")
 ENGINE = (
-    r"A crank of length $r$ turns at $\Omega$. A connecting rod of length $L$ joins it to a piston on a line "
-    "through the crank's axis; "
-    r"$\phi$ is the angle of the crank to this line."
+    r"A crank of length $r$ rotates at $\Omega$. A connecting rod of length $L$ joins it to a piston on a line "
+    r"through the crank's axis; $\phi$ is the angle of the crank to this line."
 )
 
 
@@ -62,7 +61,7 @@ def rod_rate(random: Random) -> Problem:
     rate = angle.diff(phi) * Omega
     formula = Omega * r * cos(phi) / sqrt(L**2 - r**2 * sin(phi) ** 2)
     return Problem(
-        "How fast a connecting rod turns",
+        "The rate of a connecting rod",
         ENGINE,
         r"The angle $\psi$ of the rod to the line satisfies $L\sin\psi = r\sin\phi$; differentiate this in time.",
         (CRANK, ROD, SPEED, quantity(phi, "30 45 60 120", "deg", "angle of the crank")),
@@ -95,9 +94,8 @@ def scotch_yoke(random: Random) -> Problem:
     acceleration = (r * cos(phi)).diff(phi, 2) * Omega**2
     return Problem(
         "A Scotch yoke",
-        r"The pin of a crank of length $r$, which turns at $\Omega$, slides in a slot across the direction of "
-        "motion of a yoke. The crank is at "
-        r"the angle $\phi$ to this direction.",
+        r"The pin of a crank of length $r$, which rotates at $\Omega$, slides in a slot of a yoke that is "
+        r"perpendicular to the yoke's direction of motion. The crank is at the angle $\phi$ to this direction.",
         r"The yoke follows one coordinate of the pin, $x = r\cos\phi$.",
         (CRANK, SPEED, ANGLE),
         (
@@ -132,7 +130,7 @@ def ladder(random: Random) -> Problem:
             Line(
                 "The speed of the foot at this rate.", place.diff(theta) * formula, speed, r"-L\sin\theta\,\dot\theta"
             ),
-            Line("It is solved for the rate.", rate, formula, r"\dot\theta"),
+            Line("The equation is solved for the rate.", rate, formula, r"\dot\theta"),
         ),
         (Asked(r"\dot\theta", "the rate of the ladder's angle", formula, "rad/s"),),
     )

@@ -35,7 +35,7 @@ def period_of_rod(random: Random) -> Problem:
         (LENGTH, GRAVITY),
         (
             Line(
-                "The moment about the end, divided by the stiffness of gravity.",
+                "The moment about the end divided by the stiffness of gravity.",
                 square,
                 2 * L / (3 * g),
                 r"\frac{I_O}{m g d}",
@@ -83,7 +83,7 @@ def falling_rod(random: Random) -> Problem:
                 m * g * L / 2,
                 r"\tfrac12 I_O\omega^2",
             ),
-            Line("It is solved for the rate.", rate, formula, r"\omega"),
+            Line("The equation is solved for the rate.", rate, formula, r"\omega"),
         ),
         (Asked(r"\omega", "the rate of rotation at the lowest position", formula, "rad/s"),),
         figure=hanging_rod(),
@@ -101,7 +101,7 @@ def start_of_fall(random: Random) -> Problem:
         (LENGTH, GRAVITY),
         (
             Line("The torque that this acceleration needs.", ROD * formula, m * g * L / 2, r"I_O\ddot\theta"),
-            Line("It is solved for the angular acceleration.", acceleration, formula, r"\ddot\theta"),
+            Line("The equation is solved for the angular acceleration.", acceleration, formula, r"\ddot\theta"),
         ),
         (Asked(r"\ddot\theta", "the angular acceleration at the release", formula, "rad/s^2"),),
         figure=hanging_rod(),

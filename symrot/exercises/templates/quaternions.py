@@ -56,8 +56,8 @@ def norm_of_product(random: Random) -> Problem:
     formula = sqrt(sum(p**2 for p in second_quaternion)) * sqrt(sum(q**2 for q in quaternion))
     return Problem(
         "The norm of a product",
-        "The quaternions $p = (p_0, p_1, p_2, p_3)$ and $q = (q_0, q_1, q_2, q_3)$ are multiplied. They need not "
-        "be units.",
+        "The quaternions $p = (p_0, p_1, p_2, p_3)$ and $q = (q_0, q_1, q_2, q_3)$ are multiplied. Their norms need "
+        "not be 1.",
         "The norm of a product of quaternions is the product of their norms.",
         _numbers(second_quaternion, "0 1 2 3 4") + _numbers(quaternion, "0 1 2 3 4"),
         (

@@ -69,7 +69,7 @@ def least_friction(random: Random) -> Problem:
         (SLOPE,),
         (
             Line("The friction that the rotation needs.", friction, ratio * m * g * sin(alpha), "F"),
-            Line("Divided by the normal force.", friction / (m * g * cos(alpha)), formula, r"\mu"),
+            Line("The friction divided by the normal force.", friction / (m * g * cos(alpha)), formula, r"\mu"),
         ),
         (Asked(r"\mu", "the least coefficient of friction", formula, ""),),
     )
@@ -94,7 +94,7 @@ def speed_at_bottom(random: Random) -> Problem:
                 m * g * h,
                 r"\tfrac12 m v^2 + \tfrac12 I v^2/R^2",
             ),
-            Line("It is solved for the speed.", formula, formula, "v"),
+            Line("The equation is solved for the speed.", formula, formula, "v"),
         ),
         (Asked("v", "the speed of the centre at the bottom", formula, "m/s"),),
     )
@@ -106,7 +106,7 @@ def share_of_rotation(random: Random) -> Problem:
     rotation = moment * (v_x / R) ** 2 / 2
     share = (rotation / (rotation + m * v_x**2 / 2)).cancel()
     return Problem(
-        f"The energy of a {name} that rolls",
+        f"The energy of a rolling {name}",
         f"A uniform {name} of mass $m$ and radius $R$ rolls without slipping with the speed $v$.",
         r"The energies are $\tfrac12 m v^2$ and $\tfrac12 I v^2/R^2$.",
         (),
@@ -128,10 +128,9 @@ def cue_height(random: Random) -> Problem:
     height = R + moment / (m * R)
     formula = 7 * R / 5
     return Problem(
-        "How high to hit a billiard ball",
-        "A cue gives a billiard ball, a uniform sphere of radius $R$, a level blow at the height $h$ above the "
-        "table. The ball rolls "
-        "without slipping at once, without friction.",
+        "The height at which to hit a billiard ball",
+        "A cue gives a billiard ball, a uniform sphere of radius $R$, a horizontal blow at the height $h$ above the "
+        "table. The ball rolls without slipping at once, without friction.",
         r"The blow gives $m v = J$ and $I\omega = J (h - R)$; rolling needs $v = R\omega$.",
         (quantity(R, "26 28 30", "mm", "radius"),),
         (Line("The height above the centre is the moment over mass times radius.", height, formula, "h"),),
@@ -144,9 +143,16 @@ def top_of_wheel(random: Random) -> Problem:
     formula = 2 * R * omega_3
     return Problem(
         "The top of a wheel",
-        r"A wheel of radius $R$ rolls without slipping. It turns at the rate $\omega_3$.",
-        "The point of contact is at rest, so the wheel turns about it for the moment.",
+        r"A wheel of radius $R$ rolls without slipping. It rotates at the rate $\omega_3$.",
+        "The point of contact is at rest, so the wheel momentarily rotates about it.",
         (quantity(R, "200 250 300 350 400", "mm", "radius"), quantity(omega_3, "60 120 150 300 600", "rpm", "rate")),
-        (Line("The speed of the centre, and that of the rotation about it.", R * omega_3 + R * omega_3, formula, "v"),),
+        (
+            Line(
+                "The speed of the centre plus the speed of the top in the rotation about the centre.",
+                R * omega_3 + R * omega_3,
+                formula,
+                "v",
+            ),
+        ),
         (Asked("v", "the speed of the top of the wheel", formula, "m/s"),),
     )

@@ -37,7 +37,7 @@ def growth_near_lock(random: Random) -> Problem:
     used = next(symbol for symbol in omega if rate.has(symbol))
     near = "2 3 4 5" if at == 0 else "85 86 87 88"
     return Problem(
-        f"Near the lock of {sequence}",
+        f"Near the gimbal lock of {sequence}",
         rf"A body with the angles {sequence} is near gimbal lock, with $\psi = 0$. It rotates with the component "
         rf"$\{used!s}$ in the body.",
         r"Solve $\omega = B \, \dot q$ for the first rate. A small divisor makes it large.",
@@ -59,7 +59,7 @@ def only_sum_of_angles(random: Random) -> Problem:
     matrix = dcm("ZXZ", (phi, Integer(0), psi))
     entry = cos(phi + psi)
     return Problem(
-        "What is lost in gimbal lock",
+        "The attitude in gimbal lock",
         r"The angles ZXZ of a body are $\phi$, $\theta = 0$, $\psi$, so that the first and the third axis coincide.",
         "Two rotations about the same axis add.",
         (quantity(phi, "10 20 30 40 50", "deg", "first angle"), quantity(psi, "10 20 30 40 70", "deg", "third angle")),
@@ -70,7 +70,7 @@ def only_sum_of_angles(random: Random) -> Problem:
                 cos(phi) * cos(psi) - sin(phi) * sin(psi),
                 "R_{11}",
             ),
-            Line("The addition theorem: only the sum of the angles is left.", matrix[0, 0], entry, "R_{11}"),
+            Line("By the addition theorem, only the sum of the angles remains.", matrix[0, 0], entry, "R_{11}"),
         ),
         (Asked("R_{11}", "the first entry of the rotation matrix", entry, ""),),
     )

@@ -18,8 +18,8 @@ MOMENTS = (
 )
 RATE = quantity(Omega, "1 2 3 4 5 6", "rad/s", "rate of rotation")
 LAW = (
-    r"Linearise Euler's equations for two small components across the axis: both satisfy $\ddot x = \mu x$, "
-    "the same for both."
+    r"Linearise Euler's equations for the two small components perpendicular to the axis. Both satisfy $\ddot x = \mu "
+    r"x$ with the same $\mu$."
 )
 
 
@@ -65,17 +65,18 @@ def _swing(axis: int, which: str) -> Problem:
     written = Omega**2 * differences / (one * two)
     formula = Omega * sqrt(differences / (one * two))
     return Problem(
-        f"Small swings about the axis of the {which} moment",
-        rf"A free body with the moments $A > B > C$ rotates at $\Omega$ about the axis of its {which} moment. A "
-        "small disturbance swings "
-        r"as $\cos\nu t$.",
+        f"Small oscillations about the axis of the {which} moment",
+        rf"A free body with the moments $A > B > C$ rotates at $\Omega$ about the axis of its {which} moment. A small "
+        r"disturbance oscillates as $\cos\nu t$.",
         LAW,
         (*MOMENTS, RATE),
         (
-            Line("The square of the matrix of the linear equations, with the other sign.", square, written, r"\nu^2"),
+            Line(
+                "The square of the matrix of the linear equations, with the opposite sign.", square, written, r"\nu^2"
+            ),
             Line("The root is taken.", sqrt(written), formula, r"\nu"),
         ),
-        (Asked(r"\nu", "the rate of the swing in the body", formula, "rad/s"),),
+        (Asked(r"\nu", "the rate of the oscillation in the body", formula, "rad/s"),),
         _ordered,
     )
 
@@ -97,7 +98,7 @@ def thrown_book(random: Random) -> Problem:
     square = _factor(1).subs(moments, simultaneous=True)
     written = Omega**2 * (a**2 - b**2) * (b**2 - c**2) / ((b**2 + c**2) * (a**2 + b**2))
     return Problem(
-        "A book that is thrown",
+        "A thrown book",
         r"A uniform book has the sides $a > b > c$. It is thrown with the rate $\Omega$ about the axis parallel to "
         "the side $b$, the "
         r"intermediate axis. A small disturbance grows as $e^{\lambda t}$.",

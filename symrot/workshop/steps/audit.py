@@ -21,6 +21,7 @@ from symrot.certificates.step_certificate import (
     is_step,
     rates_of,
 )
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
 from symrot.codegen.steps import Method
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
@@ -81,7 +82,10 @@ def audit_step(
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got one that was edited")
     if data["trusted"] != (TRUSTED if "bounds" in data else TRUSTED | NOT_STATED):
         raise CertificateError(f"{path}: expected the assumptions that symrot states, got others")
-    texts = _files(path, name, data)
+    try:
+        texts = _files(path, name, data)
+    except (KeyError, TypeError, ValueError, OverflowError) as reason:
+        raise CertificateError(f"{path}: expected files and parameters as symrot prints them ({reason})") from None
     source = texts[f"{name}.c"]
     check_header(texts[f"{name}.h"], source, name)
     method, rates = _method(path, data), rates_of(data)
@@ -99,8 +103,10 @@ def audit_step(
 
 
 def _files(path: Path, name: str, data: Data) -> dict[str, str]:
-    """Return the files of a step, whose hashes are those of the certificate."""
+    """Return a map from the name of each file of a step to its text, after comparing its hash with the certificate."""
     expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
+    parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
+    expected |= {parameters_file(name)} if parameters else set()
     if not isinstance(data["files"], dict) or set(data["files"]) != expected:
         raise CertificateError(f"{path}: expected the hashes of {', '.join(sorted(expected))}, got others")
     texts = {}
@@ -112,6 +118,11 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
         if sha256(content).hexdigest() != digest:
             raise CertificateError(f"{path.parent / file}: expected the file of the certificate, got an edited one")
         texts[file] = content.decode("utf-8", "replace")
+    values = [(symbol, float.fromhex(value)) for symbol, value in parameters]
+    if values and texts[parameters_file(name)] != parameters_header(name, values):
+        raise CertificateError(
+            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states"
+        )
     return texts
 
 
@@ -127,7 +138,7 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare the certificate with that of a shipped scene; return a sentence."""
+    """Compare a certificate with what symrot derives for the shipped scene that it names; return the result."""
     match = re.fullmatch(r"symrot emit (\S+) --step \w+(?: --order \d+)? --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
@@ -143,7 +154,7 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
-    """Compute the bounds of a certificate again; return a sentence."""
+    """Compute the bounds of a certificate again; return a sentence that says that they agree."""
     name, rates = data["kernel"], rates_of(data)
     try:
         section = data["bounds"]["rounding"]

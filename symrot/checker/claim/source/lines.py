@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.complex_parts import imaginary_unit, open_numbers, substituted
+from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Chain, Reading, readings_of
 from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
@@ -45,6 +45,7 @@ def claims_of_reading(
         if len(links) > 1 and set(chain.signs) != {"=="}:
             raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
         used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
+        used |= {name.removesuffix(BAR) for name in used} & {*numbers}  # the conjugate of z needs z
         known = _needed(define, used)
         known += [
             item for item in numbers.items() if item[0] in used and item not in define and item[1] not in chain.sides
@@ -91,11 +92,13 @@ def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[s
     unit = imaginary_unit(formulas)
     if unit is None:
         return open_numbers(formulas)
-    return {
+    numbers = {
         str(chain.sides[0].value): chain.sides[1]
         for chain in lines
         if len(lines) > 1 and chain.sides[0].kind == "name" and unit.value in {n.value for _, n in walk(chain.sides[1])}
-    } or open_numbers(formulas, str(unit.value))
+    }
+    own = {name: tree for name, tree in numbers.items() if name.removesuffix(BAR) not in numbers or BAR not in name}
+    return own or open_numbers(formulas, str(unit.value))
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:

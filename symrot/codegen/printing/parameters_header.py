@@ -1,0 +1,29 @@
+"""C header with the values of a step's parameters: those of the scene, in the order of the argument p."""
+
+from collections.abc import Sequence
+
+__all__ = ["parameters_file", "parameters_header"]
+
+
+def parameters_file(name: str) -> str:
+    """Return the name of the header with the parameters of a step."""
+    return f"{name}_parameters.h"
+
+
+def parameters_header(name: str, parameters: Sequence[tuple[str, float]]) -> str:
+    """Return the text of a header that defines the array ``symrot_NAME_parameters``.
+
+    Parameters
+    ----------
+    name : str
+        Name of the step.
+    parameters : sequence of (str, float)
+        Names and values, in the order of p.
+    """
+    guard = f"SYMROT_{name.upper()}_PARAMETERS_H"
+    return "\n".join([
+        f"/* The parameters p of {name}: values of the scene; {name}.c has their formulas. Printed by symrot. */",
+        f"#ifndef {guard}", f"#define {guard}", "",
+        f"static const double symrot_{name}_parameters[{len(parameters)}] = {{",
+        *(f"    {value!r}, /* {symbol} */" for symbol, value in parameters), "};", "", "#endif",
+    ]) + "\n"  # fmt: skip
