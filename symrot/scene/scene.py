@@ -227,7 +227,7 @@ class Scene:
         --------
         >>> import symrot
         >>> symrot.load_scene("t_handle").value("omega_2")
-        Fraction(8, 1)
+        Fraction(0, 1)
         """
         value = present_value(self._content(), key, self.initial.omega_b, self.body, self.torques)
         try:
