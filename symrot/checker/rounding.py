@@ -2,9 +2,10 @@
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, negated, number, sum_of, walk
 from symrot.checker.claim.values import decide_value
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.exact.intervals import enclosure
@@ -21,10 +22,10 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict
     source = claim.sources.get("claim", "")
-    for number, value in (claim.relation[1:], claim.relation[:0:-1]):
-        digits = _decimal(number, source) or _long_whole(number, source, value)
+    for side, value in (claim.relation[1:], claim.relation[:0:-1]):
+        digits = _decimal(side, source) or _long_whole(side, source, value)
         if digits and not _decimal(value, source) and _is_constant(value):
-            return _rounded(claim, verdict, value, digits, number.span)
+            return _rounded(claim, verdict, value, digits, side)
     return verdict
 
 
@@ -35,18 +36,36 @@ def rounded_value(claim: Claim) -> str:
     """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
-    if interval is None or "e" in claim.printed.lower():
+    if interval is None:
         return ""
-    places = len(claim.printed.strip().partition(".")[2])
-    right = f"{float(interval.mid):.{places}f}"
+    mantissa, _, power = claim.printed.strip().lower().partition("e")
+    places = len(mantissa.partition(".")[2])
+    right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
     return right if decide_value(replace(claim, printed=right)).verdict == "true" else ""
 
 
 def _decimal(node: Node, source: str) -> str:
-    """Return the digits of a tree that is a decimal number, as they were typed; an empty text for any other tree."""
+    """Return the digits of a tree that is a decimal number, as they were typed; an empty text for any other tree.
+
+    A decimal number times a power of ten is one number: ``7.27e-5`` for ``7.27*10^-5``.
+    """
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
-    digits = source[inner.span[0] : inner.span[1]]
-    return sign + digits if inner.kind == "number" and "." in digits else ""
+    mantissa, power = _scientific(inner)
+    digits = source[mantissa.span[0] : mantissa.span[1]]
+    if mantissa.kind != "number" or "." not in digits or (power and "e" in digits.lower()):
+        return ""
+    return f"{sign}{digits}e{power}" if power else sign + digits
+
+
+def _scientific(tree: Node) -> tuple[Node, int]:
+    """Return the number and the power of ten in a product such as ``7.27*10^-5``; any other tree, and the power 0."""
+    if tree.kind != "product" or len(tree.args) != 2 or tree.args[1].kind != "power":
+        return tree, 0
+    mantissa, (base, exponent) = tree.args[0], tree.args[1].args
+    negative, whole = (True, exponent.args[0]) if exponent.kind == "neg" else (False, exponent)
+    if base != number(10) or whole.kind != "number" or whole.value.denominator != 1:
+        return tree, 0
+    return mantissa, -int(whole.value) if negative else int(whole.value)
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
@@ -68,16 +87,34 @@ def _is_constant(node: Node) -> bool:
     return all(part.value == "pi" for _, part in walk(node) if part.kind == "name")
 
 
-def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, place: tuple[int, int]) -> Verdict:
+def _begins_with(worked: Claim) -> bool:
+    """Return whether the decimal digits of a value begin with the printed ones, as those of 2/3 do with ``0.66..``."""
+    assert worked.value is not None
+    places = len(worked.printed.partition(".")[2])
+    half = number(Fraction(5, 10 ** (places + 1)))
+    middle = sum_of([worked.value, half if worked.printed.startswith("-") else negated(half)])
+    return "e" not in worked.printed and decide_value(replace(worked, value=middle)).verdict == "true"
+
+
+def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Node) -> Verdict:
     worked = replace(claim, relation=None, value=value, printed=digits)
     decision = decide_value(worked)
+    source = claim.sources["claim"]
+    if source.startswith("..", side.span[1]) and _begins_with(worked):
+        note = f"to the digits given: the value begins with {digits}"
+        return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     if decision.verdict == "true":
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     right = rounded_value(worked)
     if not right:
         return verdict
-    source = claim.sources["claim"]
-    repair = Repair(source[: place[0]] + right + source[place[1] :], "digits", 1.0)
     diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")
-    return replace(verdict, diagnosis=diagnosis, repairs=(repair,))
+    start, end = _scientific(side.args[0] if side.kind == "neg" else side)[0].span
+    shown = right.partition("e")[0] if end != side.span[1] else right
+    written = shown.removeprefix("-") if side.kind == "neg" else shown
+    repair = Repair(source[:start] + written + source[end:], "digits", 1.0)
+    witness = decision.counterexample
+    if witness is not None and side is claim.relation[1]:  # type: ignore[index]
+        witness = replace(witness, left=witness.right, right=witness.left)
+    return replace(verdict, counterexample=witness or verdict.counterexample, diagnosis=diagnosis, repairs=(repair,))

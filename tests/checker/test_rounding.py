@@ -7,7 +7,8 @@ import symrot
 
 @pytest.mark.parametrize("claim", [
     "1500*2*pi/60 == 157.08", "1500*2π/60 = 157.08", "157.08 == 50*pi", "√2 = 1.414", "1/3 = 0.33", "-pi == -3.14",
-    "2 sin 45° = 1.41421", "2/3 == 0.667", "exp(1) == 2.718",
+    "2 sin 45° = 1.41421", "2/3 == 0.667", "exp(1) == 2.718", "2π/86400 = 7.27×10⁻⁵", "-2*pi/86400 == -7.27*10**-5",
+    r"\frac{2\pi}{86400} = 7.27\times10^{-5}",
 ])  # fmt: skip
 def test_a_rounded_number_is_true_to_its_digits(claim):
     verdict = symrot.check(claim)
@@ -18,7 +19,8 @@ def test_a_rounded_number_is_true_to_its_digits(claim):
 
 @pytest.mark.parametrize(("claim", "right"), [
     ("1500*2*pi/60 == 157.09", "1500*2*pi/60 == 157.08"), ("√2 = 1.415", "sqrt(2) = 1.414"), ("2/3 == 0.66", "2/3 == 0.67"),
-    ("3.15 == pi", "3.14 == pi"), ("-pi == -3.141", "-pi == -3.142"),
+    ("3.15 == pi", "3.14 == pi"), ("-pi == -3.141", "-pi == -3.142"), ("-pi == 3.14", "-pi == -3.14"),
+    ("2π/86400 = 7.28×10⁻⁵", "2*π/86400 = 7.27*10^(-5)"),
 ])  # fmt: skip
 def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
     verdict = symrot.check(claim)
@@ -34,3 +36,17 @@ def test_a_number_without_a_point_and_a_formula_with_symbols_are_compared_exactl
     assert symrot.check("0.5*x == x/2").notes == ()
     assert symrot.check("0.1 + 0.2 == 0.3").notes == ()
     assert symrot.check("1.5 == 1.49").diagnosis.code != "digits"
+
+
+def test_digits_with_two_dots_go_on():
+    """``0.66..`` are the first digits of 2/3 and no rounded number, as in the texts of counterexamples."""
+    assert symrot.check("2/3 = 0.66..").notes == ("to the digits given: the value begins with 0.66",)
+    assert symrot.check("-2/3 = -0.666...").verdict == "true"
+    assert symrot.check("2/3 = 0.65..").verdict == symrot.check("2/3 = 0.68..").verdict == "false"
+
+
+def test_a_wrong_number_is_set_against_the_decimal_digits_of_the_value():
+    witness = symrot.check("√2 = 1.415").counterexample
+    assert (witness.lhs, witness.rhs) == ("sqrt(2) = 1.41421356237..", "1.415")
+    witness = symrot.check("1.415 = √2").counterexample
+    assert (witness.lhs, witness.rhs) == ("1.415", "sqrt(2) = 1.41421356237..")

@@ -83,10 +83,10 @@ _MEASURED = re.compile(rf"(?<![\w.^])(?<!\*\*)({_VALUE})(\s*/\s*|[ *·⋅]*)({_O
 _PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT}){_NO_LETTER}(?P<power>{_POWER})")
 _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
-    (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "), (r"\\(?:cdot|times)\b", "*"),
-    (r"\\approx\b", "="), (r"\\%", "%"),
+    (r"\^\{?\\circ\}?|\\degree|\\si\{\\degree\}", "°"), (r"\\[,;: !]|~|\\quad", " "),
+    (r"\\(?:cdot|times)(?![A-Za-z])", "*"), (r"\\approx(?![A-Za-z])", "="), (r"\\%", "%"),
     (r"\\(theta|phi|psi|alpha|beta|gamma|delta|omega|Omega|Theta|Phi)(?![A-Za-z])", r" \1 "),
-    (r"\\(?:left|right)\b", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi\b", " pi "),
+    (r"\\(?:left|right)(?![A-Za-z])", ""), (r"\^\{(-?\d+)\}", r"^\1"), (r"\\pi(?![A-Za-z])", " pi "),
     (r"\\(sin|cos|tan)\s*\^\{?-1\}?", r" arc\1 "), (r"\\(a?r?c?(?:sin|cos|tan))(?![A-Za-z])", r" \1 "),
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"), (r"\$", ""),
 )  # fmt: skip

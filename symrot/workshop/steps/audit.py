@@ -103,7 +103,7 @@ def audit_step(
 
 
 def _files(path: Path, name: str, data: Data) -> dict[str, str]:
-    """Return the files of a step, whose hashes are those of the certificate."""
+    """Return a map from the name of each file of a step to its text, after comparing its hash with the certificate."""
     expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
     parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
     expected |= {parameters_file(name)} if parameters else set()
@@ -138,7 +138,7 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare the certificate with that of a shipped scene; return a sentence."""
+    """Compare a certificate with what symrot derives for the shipped scene that it names; return the result."""
     match = re.fullmatch(r"symrot emit (\S+) --step \w+(?: --order \d+)? --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
@@ -154,7 +154,7 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
-    """Compute the bounds of a certificate again; return a sentence."""
+    """Compute the bounds of a certificate again; return a sentence that says that they agree."""
     name, rates = data["kernel"], rates_of(data)
     try:
         section = data["bounds"]["rounding"]

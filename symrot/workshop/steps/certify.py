@@ -64,7 +64,7 @@ def certify_step(
 
 
 def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
-    """Return the section ``bounds``, for the rates as the certificate states them."""
+    """Return the section ``bounds`` of a step's certificate, computed from the rates that the certificate states."""
     rates, name = rates_of(data), f"symrot_{step.name}"
     operations = replace(read_kernel(step.c()[0], name, f"{step.name}.c"), name=step.name)
     inputs = replace(step.rates.inputs, arguments=step_signature(rates, step.name).arguments)
@@ -119,7 +119,7 @@ def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[
 
 
 def _up(value: float) -> str:
-    """Return a positive number with two digits that is not less."""
+    """Return a positive number, rounded up to two significant digits, as text."""
     text = f"{value:.1e}"
     if Fraction(text) >= Fraction(value):
         return text
