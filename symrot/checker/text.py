@@ -331,6 +331,9 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
     if left.kind != "name" or not others or name in dict(claim.define) or left in [node for _, node in walk(right)]:
         return verdict
+    inside = {own for own, tree in claim.define for _, node in walk(tree) if node.kind == "call" and left in node.args}
+    if inside:
+        return verdict  # the angle of a rotation in R is the angle on the left side of psi = atan2(R11, R21)
     define = tuple((own, _with_name(tree, name, f"{name}_1")) for own, tree in claim.define)
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":

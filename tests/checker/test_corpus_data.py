@@ -15,7 +15,7 @@ FAULTS = (
     "transposed", "half_angle", "other",
 )  # fmt: skip
 CHAPTERS = {
-    "axis_angle", "energy", "euler_equations", "free_bodies", "identities", "inertia", "quaternions", "rates", "rotation", "tops",
+    "axis_angle", "books", "energy", "euler_equations", "free_bodies", "identities", "inertia", "quaternions", "rates", "rotation", "tops",
     "vectors", "work",
 }  # fmt: skip
 FIELDS = {"id", "text", "form", "kind", "source", "expected", "check", "chapter"}

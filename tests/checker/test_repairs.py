@@ -37,6 +37,7 @@ PRINTED = {  # code: what is printed, what would be right (None: the claim holds
     "wrong_symbol": ("A*w1*w2 - B*w1*w1 == (A - B)*w1*w2", "A*w1*w2 - B*w2*w1 == (A - B)*w1*w2"),
     "missing_term": ("(a + b)**2 == a**2 + b**2", "(a + b)**2 == a**2 + b**2 + 2*a*b"),
     "extra_term": ("x*(y + z) == x*y + x*z + y*z", "x*(y + z) == x*y + x*z"),
+    "lost_brackets": ("(x + y)*(x - y)*z == x**2 - y**2*z", "(x + y)*(x - y)*z == (x**2 - y**2)*z"),
     "inertia_product_sign": ("Matrix([[I_xx, -I_xy], [-I_xy, I_yy]])*Matrix([x, y]) == "
                              "Matrix([I_xx*x + I_xy*y, I_yy*y + I_xy*x])",
                              "Matrix([[I_xx, I_xy], [I_xy, I_yy]])*Matrix([x, y]) == "

@@ -20,12 +20,12 @@ list                                members, of ``[..]`` or ``(a, b)``
 =========  =======================  ==================================
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["Node", "negated", "number", "product", "replaced", "sum_of", "text", "walk"]
+__all__ = ["Node", "negated", "number", "product", "replaced", "sum_of", "text", "walk", "with_names"]
 
 Path = tuple[int, ...]
 
@@ -145,3 +145,10 @@ _WRITE: dict[str, Callable[[Node], str]] = {
     "index": lambda node: text(node.args[0], ATOM) + f"[{', '.join(map(text, node.args[1:]))}]",
     "list": _list,
 }
+
+
+def with_names(node: Node, names: Mapping[str, str]) -> Node:
+    """Return a tree in which symbols have other names; functions of time keep theirs."""
+    if node.kind == "name" and node.value in names:
+        return replace(node, value=names[str(node.value)])
+    return replace(node, args=tuple(with_names(child, names) for child in node.args))

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 from symrot.checker.context.angle_orders import AXIS_OF_ANGLE, has_order, place_by_words
 from symrot.checker.context.bodies import bodies_of_formula
-from symrot.checker.context.context import Context, Meaning
+from symrot.checker.context.context import Context, Meaning, matrix_of
 from symrot.checker.context.quantities import LINES, PLACES, RIM, SURFACE, plain_words
 from symrot.conventions import SEQUENCES
 
@@ -101,6 +101,8 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     if meaning is not None and (line := DIRECTIONS.get(meaning.quantity.title)) and not _has_axes(name, line):
         yield "for another axis"
     phrases = meaning.quantity.formulas if meaning is not None else ()
+    if meaning is not None and meaning.frame == "body" and meaning.quantity.title == "precession rate":
+        phrases = ("goes round its axis",)  # the precession of the angular velocity, seen from the body
     if phrases and not any(phrase in name for phrase in phrases):
         yield "for another quantity"
 
@@ -174,7 +176,7 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
-    parts = {re.sub(r"_?[xyz1-3]$", "", new) for new in renamed}
+    parts = {part for new in renamed for part in (re.sub(r"_?[xyz1-3]$", "", new), matrix_of(new))}
     pairs += [(letter, letter) for letter in map(plain, letters) if letter not in renamed | parts]
     for symbol, letter in pairs:
         meaning = context.meaning_of(letter)

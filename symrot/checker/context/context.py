@@ -32,6 +32,7 @@ __all__ = [
     "Context",
     "Meaning",
     "letters_of",
+    "matrix_of",
     "quantities_of",
     "read_context",
     "read_frame",
@@ -57,6 +58,11 @@ RATES = ("rad/s", "rad/s^2", "W", "m/s", "m/s^2", "")
 
 MOST_NAMES = 40
 MOST_NEAREST = 3
+
+
+def matrix_of(name: str) -> str:
+    """Return the name of the matrix of which a name is an entry: A for A_12, J_c for J_c_xy, otherwise the name."""
+    return re.sub(r"_?([xyz]{2}|[1-3]{2})$", "", name)
 
 
 @dataclass(frozen=True)
@@ -89,9 +95,9 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether the words are about a name, or about the vector of which the name is a component."""
+        """Return whether the words are about a name, or about the vector or matrix of which the name is an entry."""
         stem = re.sub(r"_?[xyz1-3]$", "", name)
-        return name in self.names or stem in self.names or f"{stem}_i" in self.names
+        return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
 
 @dataclass(frozen=True)
@@ -210,6 +216,7 @@ def _described_body(body: Body) -> str:
     letters = ", ".join(f"{_scaled(body, symbol)} for {symbol}" for symbol in body.letters)
     motion = f" {'in general motion' if body.motion == 'general' else f'that {body.motion}'}" if body.motion else ""
     place = f" {body.place}" if body.place else ""
+    place += f" with axis {body.symmetry_axis}" if body.symmetry_axis else ""
     return f"{body.kind.title}{motion}{place}" + (f" (with {letters})" if letters else "")
 
 

@@ -38,13 +38,14 @@ from symrot.checker.context.admission import (
 from symrot.checker.context.angle_orders import has_order
 from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context, letters_of
+from symrot.checker.context.lacking_letters import with_lacking_letters
 from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import has_word, words_of
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.checker.recognition.naming import SQUARED, verdict_on_name
-from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
@@ -56,6 +57,9 @@ __all__ = ["in_context"]
 
 MOST_ASSIGNMENTS = 24
 """The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+
+MOST_CHOICES = 10_000
+"""The most ways of choosing a symbol for each letter that are tried, whether or not they keep the axes together."""
 
 MOST_DIAGNOSED = 4
 """The most ways of assigning letters for which the fault of a claim is sought."""
@@ -77,6 +81,8 @@ USUAL: tuple[tuple[str, str], ...] = (
     *((f"omega_{axis}", rf"(omega|w|Omega)_?{pattern}|{letter}") for axis, pattern, letter in (
         ("1", "[1x]", "p"), ("2", "[2y]", "q"), ("3", "[3z]", "omega|w|r"), ("x", "[1x]", "p"), ("y", "[2y]", "q"),
         ("z", "[3z]", "omega|w|r"))),
+    ("domega_1", "d(omega|w|Omega)_?[1x]|dp"), ("domega_2", "d(omega|w|Omega)_?[2y]|dq"),
+    ("domega_3", "d(omega|w|Omega)_?[3z]|dr"),
     ("g", "g"), ("c_3", r"[lRhda]|[lrh]_?(G|cm)"), ("Omega|n", r"Omega|omega_?p|n|Omega_\w+"),
     ("H", r"[HLMh]|[HL]_?[GO]"), ("M|tau_[123]", r"[MNT]|tau|Gamma"), ("W", "W|mg"),
     ("L_1", "[LHM]_?[1x]"), ("L_2", "[LHM]_?[2y]"), ("L_3", "[LHM]_?[3z]"),
@@ -95,18 +101,20 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end.
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
+    of the formula, such as "transposed".
     """
 
     known: Known
     value: Any
     mapping: dict[str, str]
     open_place: bool = False
+    how: str = ""
 
     @property
     def identification(self) -> Identification:
         """The known formula as an entry of ``recognised_as`` in a verdict."""
-        return Identification(self.known.name.removesuffix(SQUARED), "", self.mapping, self.known.source)
+        return Identification(self.known.name.removesuffix(SQUARED), self.how, self.mapping, self.known.source)
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
@@ -236,6 +244,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     verdict = verdict if decided is None or (verdict.repairs and not decided.counterexample) else decided
     if verdict.verdict in ("true", "recognised"):
         return verdict
+    if verdict.verdict == "definition" and (lacking := _without_letters(claim, named, quantity, stated)) is not None:
+        return lacking
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
         reasons = list(misfits(context, known.name, quantity))
@@ -349,9 +359,44 @@ def _by_meant_formulas(
         if same == names or not equal[0].open_place:
             return _true(claim, named, Verdict("recognised", recognised_as=readings))
         return _with_guesses(claim.context, Verdict("recognised", recognised_as=readings), stated)
+    known_decisions = [(candidate, decision) for candidate, decision in decisions if decision is not None]
     if is_open:
-        return _near(claim, named, [(candidate, d) for candidate, d in decisions if d is not None])
-    return _different(claim, named, verdict, [(candidate, d) for candidate, d in decisions if d is not None])
+        return _near(claim, named, known_decisions)
+    return _different(claim, named, verdict, [*known_decisions, *_transposed(known_decisions)])
+
+
+def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
+    """Yield the rotation matrices that may be meant from space to body."""
+    for candidate, decision in decisions:
+        if candidate.known.name.startswith("rotation matrix"):
+            yield replace(candidate, value=candidate.value.T, how="transposed"), decision
+
+
+def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
+    """Return the verdict "doubtful" on a formula without a term or factor of the formula that the context states."""
+    context = claim.context
+    own_meaning = context.meaning_of(quantity)
+    if context.body is None and (own_meaning is None or own_meaning.body is None):
+        return None
+    try:
+        formula = named.formula if named.solve is None else named.solve(named.formula)
+        value = claim.with_definitions(claim.interpreter().read(formula))
+    except InputError:
+        return None
+    stated_formulas = (
+        (known, _with_letters(context, known_value(known.text)))
+        for known in _all_known()
+        if not known.is_step and not known.is_relation and not known.name.endswith(SQUARED)
+        and admits_name(context, known.name, quantity)
+        and (own_meaning is not None or any(word in known.name for word in stated.split()))
+        and is_component(known.name, quantity)
+        and not guesses(context, known.name, stated)
+    )  # fmt: skip
+
+    def assignments(known: Known, target: Any, own: set[Expr]) -> Iterator[Mapping[Expr, Expr]]:
+        return _assignments(context, target, own, quantity, known, is_specific=True)
+
+    return with_lacking_letters(named, value, stated_formulas, assignments)
 
 
 def _is_transposed(target: Any, value: Any) -> bool:
@@ -536,7 +581,7 @@ def _assignments(
         choices.append(
             [*exact, *(symbol for symbol in fitting if symbol not in exact)] if is_open else exact or fitting
         )
-    for chosen in _distinct(choices):
+    for chosen in islice(_distinct(choices), MOST_CHOICES):
         pairs = [(symbol.name, as_text(atom)) for symbol, atom in zip(chosen, atoms, strict=True)]
         free = [pair for pair in pairs if pair[0] not in pinned]
         if not is_consistent([*free, *component(known.name, quantity)], known.is_placed):
@@ -552,6 +597,8 @@ def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
     if symbol in pinned or name in pinned:
         return name == symbol
     meaning = context.meaning_of(name)
+    if len(axes_of(symbol)) > 1 and axes_of(symbol) != axes_of(name):
+        return False  # an entry of a matrix keeps its row and column, or exchanges them
     if meaning is not None and meaning.quantity.symbols:
         return re.fullmatch(meaning.quantity.symbols, symbol) is not None
     return name == symbol or any(

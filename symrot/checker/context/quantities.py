@@ -69,7 +69,7 @@ QUANTITIES: tuple[Quantity, ...] = (
               "minus integral of y z dm", "negative product of inertia"),
              ("product of inertia",), "I_xy|I_xz|I_yz", MOMENT, sign="minus"),
     Quantity("inertia tensor", ("inertia matrix", "tensor of inertia", "matrix of inertia"),
-             ("inertia tensor", "parallel-axis"), MOMENTS, MOMENT),
+             ("inertia tensor", "parallel-axis"), f"{MOMENTS}|I_xy|I_xz|I_yz", MOMENT),
     Quantity("radius of gyration", (), ("radius of gyration",), "k_O|k_G|i|k", "m"),
     Quantity("kinetic energy", ("kinetic energy of rotation", "rotational energy", "energy of rotation"),
              ("kinetic energy",), "E_k", ENERGY),
@@ -232,6 +232,7 @@ _SPELLINGS = (
     (r"\bx\s*y\s*(\\,)?\s*dm\b", "x y dm"), (r"\bx\s*z\s*(\\,)?\s*dm\b", "x z dm"),
     (r"\by\s*z\s*(\\,)?\s*dm\b", "y z dm"), (r"\bmoments\b", "moment"), (r"\bproducts\b", "product"),
     (r"\b(rate|quaternion|parameter|torque|rotation|couple|angle)s\b", r"\1"), (r"\baxes\b", "axis"),
+    (r"\b(with|in|by) (the )?(euler )?angles? phi,? theta,?( and)? psi\b|\bat (the )?(finite )?angle theta\b", " "),
     (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
     (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
 )  # fmt: skip

@@ -10,13 +10,15 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
-from symrot.checker.recognition.parts import FUNCTIONS, Letters, Values, near, values_of
-from symrot.checker.repair.edits import COST, Edit, flattened, single_edits
+from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
+from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 
 __all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
 
+MOST_TERMS = 6
+"""The most terms of a sum to which brackets are added."""
 MOST_EDITS = 700
 """The most edits of one formula that are evaluated."""
 CLOSE = 1e-8
@@ -47,11 +49,13 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return all single edits of a formula with arrays, with their values, sorted by the sum of their entries."""
-    if not has_arrays(formula, numeric):
-        return []
+    """Return the single edits of a formula with their values, sorted by the sum of the entries.
+
+    Of a formula without arrays, these are only the edits that add brackets.
+    """
+    edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
-    for edit in islice(_edits(formula, numeric, letters), MOST_EDITS):
+    for edit in islice(edits, MOST_EDITS):
         values = values_of(edit.tree, letters.points)
         if values is not None:
             faults.append(ArrayFault(_total(values), edit, values))
@@ -89,6 +93,16 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
     yield from _powers(formula, numeric)
     yield from _conjugates(formula)
     yield from _factors(formula, numeric, letters)
+    yield from _products(formula, numeric)
+
+
+def _brackets(formula: Node) -> Iterator[Edit]:
+    """Yield the formula with brackets that may be missing."""
+    for path, node in walk(formula):
+        if node.kind == "sum" and len(node.args) <= MOST_TERMS:
+            for made in bracketed(node.args):
+                cost = COST["lost_brackets"] + COST["per_level"] * len(path)
+                yield Edit("lost_brackets", cost, path, flattened(replaced(formula, path, _always(made))))
 
 
 def _always(node: Node) -> Callable[[Node], Node]:
@@ -133,9 +147,37 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 
+def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
+    """Yield the formula with one more matrix in front of a vector, and with one more cross product."""
+    shapes = {node: _shape(node, numeric) for _, node in walk(formula) if numeric.is_matrix(node)}
+    names = sorted({*numeric.matrix_names})
+    named = {name: _shape(Node("name", name), numeric) for name in names}
+    for path, node in walk(formula):
+        if shapes.get(node) != VECTOR or node.kind in ("neg", "sum"):
+            continue
+        for name, shape in named.items():
+            other = Node("name", name)
+            if shape == SQUARE:
+                made = product([other, node])
+            elif shape == VECTOR and other != node:
+                made = Node("call", "cross", (other, node))
+            else:
+                continue
+            tree = flattened(replaced(formula, path, _always(made)))
+            yield Edit("factor", COST["missing_matrix"] + COST["per_level"] * len(path), path, tree)
+
+
+VECTOR, SQUARE = (3, 1), (3, 3)
+
+
+def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
+    values = values_of(node, numeric.points[:1])
+    return shape_of(values[0]) if values else None
+
+
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
     """Yield the scalars that may be missing as a factor of a term."""
-    made: dict[Node, None] = {}
+    made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):
             assert function in FUNCTIONS

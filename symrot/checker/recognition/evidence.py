@@ -169,7 +169,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
-    if is_new and (len(letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special):
+    if is_new and (
+        max(len(letters), near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+    ):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
@@ -178,6 +180,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
         return words is not None and not (is_energy and has_tension)
     is_general = not letters <= names_in(near.tree)  # the formula may have a letter of its own
+    if is_general and near.code == "factor" and _is_of_stated_body(claim, near):
+        return True
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
         return False  # the formula may be a more general one
@@ -188,6 +192,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if is_matrix_given and len(entries) >= MANY_ENTRIES:
         return True
     if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+        return True
+    is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
+    if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
         return True
@@ -205,6 +212,12 @@ def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether the context of a claim says that its quantity is the one that a known formula is for."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _is_of_stated_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context of a claim states a body that the name of a known formula contains."""
+    body = claim.context.body
+    return body is not None and body.kind.title in near.known.name
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
@@ -337,7 +350,7 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
 
 def quantity_name(named: NamedFormula) -> str:
     """Return the name of a quantity; a time derivative has a ``d`` in front of the name."""
-    name, dots = re.subn("_?dot$", "", re.sub("(_prime)+$", "", named.name))
+    name, dots = re.subn("_?dot$", "", re.sub("_(plus|minus)$|(_prime)+$", "", named.name))
     return f"d{name}" if named.is_rate or dots else name
 
 

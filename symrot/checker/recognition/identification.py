@@ -5,7 +5,7 @@ for either order of a quaternion's components. Every name that is returned has b
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import islice, permutations, product
@@ -179,8 +179,17 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
             yield name, claim.definitions.values[name]
 
 
+def _any(known: Identification) -> bool:
+    return True
+
+
 def identified(
-    value: Any, steps: bool = True, named: bool = False, quantity: str | None = None, is_relation: bool = False
+    value: Any,
+    steps: bool = True,
+    named: bool = False,
+    quantity: str | None = None,
+    is_relation: bool = False,
+    fits: Callable[[Identification], bool] = _any,
 ) -> Iterator[Identification]:
     """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
@@ -201,7 +210,7 @@ def identified(
             for known in by_fingerprint().get(relation_key(own.key(view.shape, view.order), is_relation), ())
             if (steps or not known.is_step)
             and (named or not known.only_named)
-            and (match := _matched(known, own, entries, view, quantity)) is not None
+            and (match := _matched(known, own, entries, view, quantity, fits)) is not None
         ]
         if matches:
             break
@@ -265,7 +274,12 @@ def _known_entries(text: str) -> tuple[tuple[Expr, ...], Fingerprint]:
 
 
 def _matched(
-    known: Known, own: Fingerprint, entries: Sequence[Expr], view: View, quantity: str | None
+    known: Known,
+    own: Fingerprint,
+    entries: Sequence[Expr],
+    view: View,
+    quantity: str | None,
+    fits: Callable[[Identification], bool],
 ) -> Identification | None:
     """Return the identification of a formula as a known one, if the equality is proven; otherwise None."""
     theirs, print_of = _known_entries(known.text)
@@ -284,16 +298,18 @@ def _matched(
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
         if factor is None:
             continue
+        renaming = {mine: other for mine, other in pairs if not _alike(mine, other)}
+        changes = [part for part in (view.how, "" if known.is_relation else _factor_text(factor)) if part]
+        match = Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
+        if not fits(match):
+            continue
         left = [factor * entry.xreplace(pairing) for entry in theirs]
         try:
             if decide(ImmutableMatrix(left), ImmutableMatrix(ordered)).verdict != "true":
                 continue
         except (InputError, TooLarge):
             continue
-        names = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
-        renaming = {mine: other for mine, other in names if not _alike(mine, other)}
-        changes = [part for part in (view.how, "" if known.is_relation else _factor_text(factor)) if part]
-        return Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
+        return match
     return None
 
 

@@ -21,6 +21,8 @@ __all__ = ["POINTS", "is_atom", "letters_of_formula", "nodes_of", "pieces_of", "
 TIME = Node("name", "t")
 MOST_DRAWS = 40
 """The most random points that are drawn to find some where a formula has a value."""
+MOST_DRAWS_WITH_ROOTS = 400
+"""The same for a formula with roots: those points are taken where the known formula, too, is likely to have a value."""
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
@@ -42,11 +44,11 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
     ]
     free = sorted({*numeric.symbols, *_symbols_of(short, numeric)} - {*short})
     narrow = any(node.value in ("asin", "acos", "cos") for node in (named.side, *nodes_of(named.formula)))
+    roots = [node.args[0] for node in nodes_of(named.formula) if node.kind == "call" and node.value == "sqrt"]
     drawn = points(
         free, numeric.functions, defined_names, hypotheses, frozenset(),
-        count=POINTS if hypotheses else MOST_DRAWS, most=0.9 if narrow else 1.7,
+        count=POINTS if hypotheses else MOST_DRAWS_WITH_ROOTS if roots else MOST_DRAWS, most=0.9 if narrow else 1.7,
     )  # fmt: skip
-    roots = [node.args[0] for node in nodes_of(named.formula) if node.kind == "call" and node.value == "sqrt"]
     defined = [point for point in drawn if values_of(named.formula, [point]) is not None]
     at = sorted(defined, key=lambda point: -min((point.value(root) for root in roots), default=0.0))[:POINTS]
     if len(at) < POINTS:

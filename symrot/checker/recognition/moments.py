@@ -15,15 +15,19 @@ __all__ = ["is_shifted_moment", "is_symmetric_body"]
 
 EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
 """Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
+FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
+"""The same for a body whose axis of symmetry is the third."""
 
 
-def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None]) -> bool:
+def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
     """Return whether a claim may mean a body with two equal moments of inertia, and so has only one letter for them.
 
-    ``letter`` stands for the moment ``absent`` too. Books give equal moments the letter of the first: I_1 for I_1 =
-    I_2, and I_2 for I_2 = I_3.
+    ``letter`` stands for the moment ``absent`` too, and ``times`` times in the formula. Books give equal moments the
+    letter of the first: I_1 for I_1 = I_2, and I_2 for I_2 = I_3. The axis of symmetry is usually the third; another
+    axis is meant if the formula is written for equal moments: ``A p^2 + B (q^2 + r^2)``.
     """
-    return any(absent == later and renaming.get(earlier) == letter for earlier, later in EQUAL_MOMENTS)
+    equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
+    return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:

@@ -20,8 +20,9 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import (
     LEAST_SYMBOLS_EDITED,
     MOST_COMPONENTS,
@@ -42,10 +43,10 @@ from symrot.checker.recognition.evidence import (
     strangeness_of,
     words_of,
 )
-from symrot.checker.recognition.identification import identified
+from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
-from symrot.checker.recognition.nearby import near_formulas
+from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
@@ -53,6 +54,8 @@ from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.decide import decide
+from symrot.exact.printing import as_text
+from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation"]
 
@@ -253,7 +256,10 @@ def _is_norm(side: Node, other: Node) -> bool:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None."""
+    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None.
+
+    The verdict is "recognised" if the formula is a known one already, for some signs of the letters in its roots.
+    """
     words = words_of(named)
     nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
     plain = quantity_name(named)
@@ -262,6 +268,9 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
+    if nearby and nearby[0].code == "none":
+        readings = _with_root(claim, named, nearby[0])
+        return Verdict("recognised", recognised_as=readings) if readings else None
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
@@ -271,6 +280,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
         if says_too_little(claim, named, near) or _loses_letter(claim, near.tree):
             continue
         readings = _readings(claim, named, near.tree, 1) or _with_other_products(claim, named, near.tree)
+        readings = readings or _with_root(claim, named, near)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
     if not repairs:
@@ -285,6 +295,41 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     )
 
 
+def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
+    """Return the known formula near a claim, if both are equal for some signs of the letters in their roots.
+
+    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
+    """
+    ending = ending_of(near.known.name)
+    if named.solve is None or ending not in ("", SQUARED):
+        return ()
+    try:
+        value = claim.with_definitions(claim.interpreter().read(named.solve(near.tree)))
+    except InputError:
+        return ()
+    if is_matrix(value) or not _has_root_of_sum(value):
+        return ()
+    symbols = {as_text(atom): atom for atom in atoms_of([value])}
+    known = known_value(near.known.text)
+    pairs = {symbol: symbols.get(new) for symbol in known.free_symbols for old, new in near.renaming
+             if old == symbol.name}  # fmt: skip
+    if None in pairs.values() or {*pairs} != known.free_symbols:
+        return ()
+    try:
+        decision = decide_equation(Equation(value**2 if ending else value, known.xreplace(pairs)))
+    except (InputError, TooLarge):
+        return ()
+    by_sign = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in decision.requires)
+    if decision.verdict != "true" and not by_sign:
+        return ()
+    renaming = {old: new for old, new in sorted(near.renaming) if old != new}
+    reading = Identification(near.known.name.removesuffix(ending), "", renaming, near.known.source)
+    fits = fits_quantity(named, reading, matrix=False) and fits_context(
+        claim.context, named, reading, {*letters_of(near.tree)}
+    )
+    return (reading,) if fits else ()
+
+
 def _loses_letter(claim: Claim, tree: Node) -> bool:
     """Return whether a letter of a formula cancels, as b does in ``1 + b/b``."""
     try:
@@ -296,14 +341,7 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
     """Return whether exchanging m_1 and m_2 makes a formula a known one: then the other mass is the heavier one."""
-    exchanged = {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"}
-
-    def with_exchanged(node: Node) -> Node:
-        if node.kind == "name" and node.value in exchanged:
-            return replace(node, value=exchanged[str(node.value)])
-        return replace(node, args=tuple(map(with_exchanged, node.args)))
-
-    tree = with_exchanged(named.formula)
+    tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
 
@@ -355,8 +393,14 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     The likeliest formula comes first.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    is_open = words_of(named) is None and least_symbols == LEAST_SYMBOLS
+    is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
     return solved or _readings_of_relation(claim, named, tree, LEAST_SYMBOLS if is_open else LEAST_SYMBOLS_RELATED)
+
+
+def _is_stated(claim: Claim, named: NamedFormula) -> bool:
+    """Return whether the context says what each letter of a claim means."""
+    letters = names_in(named.side) | names_in(named.formula)
+    return bool(letters) and all(claim.context.meaning_of(letter) is not None for letter in letters)
 
 
 def _readings_of_relation(
@@ -374,12 +418,11 @@ def _readings_of_relation(
         return ()
     value = without_common_powers(value)
     letters = {*letters_of(tree), *letters_of(named.side)}
-    looked_up = identified(value, steps=False, named=True, quantity="", is_relation=True)
-    fitting = (
-        known
-        for known in looked_up
-        if keeps_places(named, known) and fits_context(claim.context, named, known, letters)
-    )
+
+    def fits(known: Identification) -> bool:
+        return keeps_places(named, known) and fits_context(claim.context, named, known, letters)
+
+    fitting = identified(value, steps=False, named=True, quantity="", is_relation=True, fits=fits)
     return tuple(islice(fitting, MOST_READINGS))
 
 
@@ -403,15 +446,18 @@ def _readings_of_formula(
         return ()
     letters = {*letters_of(formula)}
     searched, ending = _without_function(value)
-    looked_up = identified(searched, steps=False, named=words_of(named) is not None, quantity=quantity_name(named))
-    fitting = [
-        replace(known, name=known.name.removesuffix(ending))
-        for known in looked_up
-        if ending_of(known.name) == ending
-        and fits_quantity(named, known, is_matrix(value))
-        and fits_context(claim.context, named, known, letters)
-        and not has_diameter(known)
-    ]
+
+    def fits(known: Identification) -> bool:
+        return (
+            ending_of(known.name) == ending
+            and fits_quantity(named, known, is_matrix(value))
+            and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
+            and not has_diameter(known)
+        )
+
+    is_named = words_of(named) is not None
+    looked_up = identified(searched, steps=False, named=is_named, quantity=quantity_name(named), fits=fits)
+    fitting = [replace(known, name=known.name.removesuffix(ending)) for known in looked_up]
     fitting.sort(key=lambda known: (*strangeness_of(named, known), rarity_of(known)))
     likeliest = [
         known for known in fitting if strangeness_of(named, known)[:2] == strangeness_of(named, fitting[0])[:2]

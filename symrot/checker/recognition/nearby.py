@@ -17,12 +17,12 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, replaced, walk
-from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, matching
+from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.letters import POINTS, is_atom, letters_of_formula, nodes_of, pieces_of, text_of
 from symrot.checker.recognition.moments import is_shifted_moment, is_symmetric_body
-from symrot.checker.recognition.pairing import absent_name, is_fitting, renamings, strangeness
+from symrot.checker.recognition.pairing import absent_name, is_fitting, renaming_of_product, renamings, strangeness
 from symrot.checker.recognition.parts import (
     LACKING,
     Change,
@@ -66,7 +66,8 @@ class Near(NamedTuple):
     ``has_other_unit``, the claim's formula has another unit than the known one. If ``is_shifted``, it is the known
     moment of inertia plus m d^2, like one about a parallel axis. If ``is_symmetric``, it is the known formula for
     equal moments of inertia. ``letter`` is the changed part, if that is a symbol. ``array_letters`` is the number
-    of components and other letters of a formula with vectors or matrices, otherwise 0.
+    of components and other letters of a formula with vectors or matrices, otherwise 0. ``renaming`` gives the letters
+    of the claim for the symbols of the known formula.
     """
 
     cost: float
@@ -79,6 +80,7 @@ class Near(NamedTuple):
     is_symmetric: bool
     letter: str
     array_letters: int = 0
+    renaming: tuple[tuple[str, str], ...] = ()
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
@@ -103,10 +105,13 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     quantity = text_of(_quantity(named))
     for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
         is_wrong_kind = _is_column(known) != is_matrix(scale[0])
-        is_wrong_kind = is_wrong_kind or (_has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW)
+        is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
+        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW
+        is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
-        for renaming in renamings(_names(known), names, angles):
+        of_product = renaming_of_product(names) if "quaternion product" in known.name else None
+        for renaming in [of_product] if of_product else renamings(_names(known), names, angles):
             own = [(old, new) for old, new in renaming.items() if new is not None]
             if mine and not is_consistent([*own, (mine, quantity)]):
                 continue
@@ -116,11 +121,23 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
             compared = _compared(search, known, renaming)
             if compared is None and claim.hypotheses:
                 return []
+            if compared is None and has_root_of_sum(named.formula):
+                texts = tuple((old, new) for old, new in renaming.items() if new is not None)
+                whole = Near(
+                    0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts
+                )
+                return [whole]
             for candidate in compared or ():
                 key = (candidate.tree, known.name)
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def has_root_of_sum(formula: Node) -> bool:
+    """Return whether a formula has the root of a sum, which the look-up by fingerprint may miss by its sign."""
+    roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
+    return any(node.kind == "sum" for root in roots for _, node in walk(root))
 
 
 def _quantity(named: NamedFormula) -> Node:
@@ -175,14 +192,14 @@ def _tree(known: Known) -> Node:
 class Search(NamedTuple):
     """A claim's formula, with all variants of its parts that usual faults suggest, sorted by value at the first point.
 
-    ``arrays`` are whole formulas of vectors and matrices after one edit; ``values`` are the values of the formula
-    itself.
+    ``arrays`` are whole formulas after one edit; ``values`` are the values of the formula itself.
     """
 
     named: NamedFormula
     letters: Letters
     variants: dict[Path, list[tuple[float, Variant]]]
     arrays: list[ArrayFault]
+    has_arrays: bool
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
@@ -215,7 +232,9 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
         parent = kinds[path[:-1]] if path else ""
         made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
         by_path[path] = sorted(made, key=lambda pair: pair[0])
-    return Search(named, letters, by_path, array_faults(named.formula, NumericFilter(claim), letters), values)
+    numeric = NumericFilter(claim)
+    arrays = array_faults(named.formula, numeric, everything)
+    return Search(named, letters, by_path, arrays, has_arrays(named.formula, numeric), values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
@@ -280,16 +299,19 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     renamed = strangeness(renaming)
     is_central = "about its centre of mass" in known.name
     is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
-    array_letters = len(letters.atoms) if search.arrays else 0
+    array_letters = len(letters.atoms) if search.has_arrays else 0
     near_ones = []
+    texts = tuple((mine, text_of(node)) for mine, node in nodes.items() if node is not None)
+    written = [text_of(node) for node in nodes_of(named.formula) if is_atom(node)]
     for cost, code, tree, letter in trees:
         has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
         whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
-        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming)
+        times = written.count(letter)
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming, times)
         flags = other_unit, is_shifted, is_symmetric
-        near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters))
+        near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters, texts))
     return near_ones
 
 
@@ -407,15 +429,17 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
         return None
+    if named.solve is None:
+        return None
+    if ending_of(known.name) == SQUARED and named.side == Node("power", None, (_quantity(named), number(2))):
+        return target
     try:
         target = tuple(map(function, target))
     except (ValueError, TypeError):
         return None
-    if named.solve is None:
-        return None
     values = []
     for point, value in zip(letters.points, target, strict=True):
-        if is_matrix(value):
+        if is_matrix(value) or (named.side.value == "diff" and named.side.args[0].kind == "name"):
             if named.side.kind not in ("name", "call"):
                 return None
             values.append(value)

@@ -12,7 +12,7 @@ from itertools import islice
 from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
 from symrot.checker.recognition.renaming import axes_of, is_consistent
 
-__all__ = ["absent_name", "is_fitting", "renamings", "strangeness"]
+__all__ = ["absent_name", "is_fitting", "renaming_of_product", "renamings", "strangeness"]
 
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
 """The letters that books use for angles."""
@@ -34,6 +34,8 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 
 RADIUS = re.compile(r"[rR](_?\w+)?|a")
 """The letters of radii; a is also the side of a box."""
+
+COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
 """The number of changed names as which a letter counts that is unusual for a length of its kind."""
@@ -60,7 +62,32 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
         start: dict[str, str | None] = {absent: None} if absent else {}
         search = islice(_extended(start, rest, fitting, len(own)), MOST_STEPS // (len(order) if absent else 1))
         complete += [renaming for renaming in search if renaming is not None]
-    return sorted(complete, key=lambda renaming: (_moved(renaming), strangeness(renaming)))[:MOST]
+    return sorted(complete, key=_rank)[:MOST]
+
+
+def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
+    """Return the sort key of a renaming: the most similar ones, and of these the complete ones, come first."""
+    return _moved(renaming), strangeness(renaming), None in renaming.values(), _unlike(renaming)
+
+
+def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
+    """Return the renaming of the components of a quaternion product whose factors are numbered: a1, .., d1 and a2, ...
+
+    The result is None for other names.
+    """
+    places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
+    letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
+    if len(places) != len(own) or (len(letters), len(numbers)) != (4, 2) or len(own) < 2 * len(letters) - 1:
+        return None
+    return {
+        f"{factor}{n}": places.get((letter, number))
+        for factor, number in zip("qp", numbers, strict=True)
+        for n, letter in enumerate(letters)
+    }
+
+
+NUMBERED = re.compile("([a-z])_?([1-9])")
+"""A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
@@ -69,13 +96,24 @@ def _moved(renaming: dict[str, str | None]) -> int:
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
 
+def _unlike(renaming: dict[str, str | None]) -> int:
+    """Return the number of symbols that a renaming gives a name with another first letter."""
+    return sum(other is not None and not _has_letter_of(name, other) for name, other in renaming.items())
+
+
+def _has_letter_of(name: str, other: str) -> bool:
+    """Return whether two names begin with the same letter, large or small."""
+    return name.lstrip("d")[:1].lower() == plain_name(other).lstrip("d")[:1].lower()
+
+
 def strangeness(renaming: dict[str, str | None]) -> int:
     """Return how many names a renaming changes; a name that the claim lacks counts too.
 
     A letter for radii in place of another length, or the other way round, counts more.
     """
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
-    unusual = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and (other := renaming[name]) is not None
+    lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
+    unusual = [name for name in lengths if (other := renaming[name]) is not None
                and bool(RADIUS.fullmatch(name)) != bool(RADIUS.fullmatch(other))]  # fmt: skip
     return len(changed) + UNUSUAL * len(unusual)
 
@@ -93,7 +131,7 @@ def _extended(
     name, *rest = order
     others = [other for other in fitting[name] if other not in renaming.values()]
     same = [other for other in others if plain_name(other) == name]
-    for other in same or others:
+    for other in same or sorted(others, key=lambda other: not _has_letter_of(name, other)):
         pairs = [(mine, chosen) for mine, chosen in renaming.items() if chosen is not None]
         if not is_consistent([*pairs, (name, other)]):
             continue
@@ -112,7 +150,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     is_rate = own.startswith("diff(") or own.endswith("dot")
     if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
-    if known in ("x", "y", "z") and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
+    if known in COORDINATES and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
         return True  # a component of any vector, such as a rotated velocity
     if is_angle:
         return unit in ("rad", None)

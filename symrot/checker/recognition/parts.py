@@ -50,6 +50,8 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 TIME = Node("name", "t")
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
+HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
+"""Factor that an angle by an inverse function should have -> the fault of a formula without this factor."""
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
 """Factor that an angle should have -> the fault of a formula without this factor."""
 
@@ -281,7 +283,8 @@ def multiples(part: Part) -> Iterator[Change]:
             yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
         else:
             cost = COST["solved_factor_2" if ratio in (2, Fraction(1, 2)) else "solved_rational_factor"]
-            yield Change(scaled(part.node, ratio), "factor", cost)
+            is_angle = part.node.value in ("acos", "asin", "atan", "atan2")
+            yield Change(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
 
 
 class Variant(NamedTuple):
@@ -323,7 +326,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
         cost = COST["factor"] + COST["quotient_inverted"]
         yield Variant(Change(node.args[0], "factor", cost), tuple(1 / value for value in values))
         return
-    elif node.kind not in ("name", "call", "sum") or not parent:
+    elif not (node.kind in ("name", "call", "sum") and parent) and not (node.kind == "product" and parent == "inv"):
         return
     bases = values_of(base, letters.points) or ()
     for power in POWERS:

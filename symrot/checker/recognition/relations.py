@@ -30,13 +30,14 @@ from sympy import (
     solve,
     tan,
     together,
+    trace,
 )
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia.solids import solid
-from symrot.kinematics import quaternion
+from symrot.kinematics import quaternion, rotation_vector
 from symrot.kinematics.euler import rate_jacobian
 
 __all__ = ["OTHERS", "Relation", "primitive", "relations", "solved", "terms_expanded", "without_common_powers"]
@@ -47,10 +48,10 @@ DDTHETA = symbols.ddtheta
 A, B, C, ARM, MASS, G = symbols.A, symbols.B, symbols.C, symbols.c_3, symbols.m, symbols.g
 HALF = Rational(1, 2)
 SPIN = symbols.omega_3
-HEAVY, FREE, ROLLING, PLANE, WHEEL, PENDULUM, EULER = (
+HEAVY, FREE, ROLLING, PLANE, WHEEL, PENDULUM, EULER, AXIS = (
     f"derivations/{name}.md"
     for name in ("heavy_top", "symmetric_top", "rolling", "planar_motion", "gyroscopic_wheel", "pendulum",
-                 "euler_equations")
+                 "euler_equations", "axis_and_angle")
 )  # fmt: skip
 
 
@@ -71,6 +72,7 @@ ALPHA, FALL, SLOPE = _new("alpha_a", "rad/s^2"), _new("a_l", "m/s^2"), _new("bet
 TORQUE, PERIOD, LENGTH = _new("M", "N m"), _new("T_p", "s"), _new("q_d", "m")
 GYRATION = _new("k_O", "m, of gyration")
 TILT = _new("gamma", "rad")
+WHEEL_MOMENTUM = _new("h_w", "kg m^2/s")
 WORK = _new("W_k", "J")
 
 
@@ -178,7 +180,7 @@ LONGEST = 120
 
 def relations() -> Iterator[Relation]:
     """Yield all relations in a fixed order."""
-    for group in (_one_axis, _rolling, _steady, _heavy, _free, _planar, _aircraft):
+    for group in (_one_axis, _rolling, _pendulum, _steady, _heavy, _free, _planar, _aircraft, _wheel, _trace):
         yield from group()
 
 
@@ -224,6 +226,7 @@ def _rolling() -> Iterator[Relation]:
     """Yield the relations of bodies that roll without slipping, and of masses on a pulley."""
     radius, height = symbols.R, symbols.h
     shares: list[tuple[str, Expr]] = [("a body", A)]
+    shares.append(("a body of given radius of gyration", MASS * GYRATION**2))
     for name in ROLLERS:
         body = solid(name)
         moment = body.inertia_about(tuple(body.center_of_mass))[2, 2]
@@ -245,7 +248,46 @@ def _rolling() -> Iterator[Relation]:
     first, second, _ = symbols.particle_masses
     energy = (first + second) * SPEED**2 / 2 + A * (SPEED / radius) ** 2 / 2
     power = energy.diff(SPEED) * FALL - (first - second) * G * SPEED
-    yield Relation("two masses on a pulley", PLANE, cancel(power / SPEED), {FALL: "acceleration of"})
+    falling = cancel(power / SPEED)
+    yield Relation("two masses on a pulley", PLANE, falling, {FALL: "acceleration of"})
+    alone = falling.subs({first: MASS, second: 0})
+    yield Relation("a mass that unwinds a string from a wheel", PLANE, alone, {FALL: "acceleration of"})
+
+
+def _pendulum() -> Iterator[Relation]:
+    """Yield the Lagrangian, the energy and the period of a physical pendulum, by its moment or radius of gyration."""
+    potential = -MASS * G * ARM * cos(THETA)
+    stiffness = potential.diff(THETA, 2).subs(THETA, 0)
+    for moment in (A, MASS * GYRATION**2):
+        kinetic = moment * DTHETA**2 / 2
+        title = "a physical pendulum"
+        yield Relation(title, PENDULUM, ENERGY - (kinetic - potential), {ENERGY: "Lagrangian of"})
+        yield Relation(title, PENDULUM, ENERGY - (kinetic + potential), {ENERGY: "energy of"})
+        swing = PERIOD**2 * stiffness - (2 * pi) ** 2 * moment
+        yield Relation(title, PENDULUM, cancel(swing / MASS), {PERIOD: "period of"})
+
+
+def _wheel() -> Iterator[Relation]:
+    """Yield Euler's equations of a body that carries a wheel, whose momentum is along a principal axis."""
+    rates = Matrix(symbols.omega_rates)
+    inertia = diag(A, B, C)
+    for place, word in enumerate(("first", "second", "third")):
+        momentum = inertia * OMEGA
+        momentum[place] += WHEEL_MOMENTUM
+        needed = inertia * rates + OMEGA.cross(momentum)
+        for own, rate in zip(needed, symbols.omega_rates, strict=True):
+            title = f"a body with a wheel along the {word} axis, by Euler's equations"
+            if own.has(WHEEL_MOMENTUM):
+                yield Relation(title, WHEEL, expand(own), {rate: "angular acceleration of"})
+
+
+def _trace() -> Iterator[Relation]:
+    """Yield the relation between the trace of a rotation matrix and the angle."""
+    matrix = Matrix(rotation_vector.dcm_of_axis_angle())
+    n1, n2, n3 = symbols.axis
+    total = expand(trace(matrix)).subs(n3**2, 1 - n1**2 - n2**2)
+    entries = Matrix(3, 3, symbols.rotation_entries)
+    yield Relation("the trace of a rotation matrix", AXIS, trace(entries) - expand(total), {})
 
 
 def _top() -> tuple[Matrix, Expr]:
@@ -328,6 +370,10 @@ def _free() -> Iterator[Relation]:
     H, E = symbols.H, symbols.E
     square, energy = momentum.dot(momentum), OMEGA.dot(momentum) / 2
     yield Relation("a free body", EULER, H**2 - square, {H: "angular momentum of"})
+    symmetric = {B: A}
+    yield Relation("a free symmetric body", EULER, H**2 - square.subs(symmetric), {H: "angular momentum of"})
+    title = "rotation of a symmetric body"
+    yield Relation(title, EULER, ENERGY - energy.subs(symmetric), {ENERGY: "kinetic energy of"})
     parts = symbols.momentum_b
     velocities = [part / moment for part, moment in zip(parts, (A, B, C), strict=True)]
     by_momenta = energy.subs(dict(zip(OMEGA, velocities, strict=True)))
@@ -364,6 +410,9 @@ def _free() -> Iterator[Relation]:
     yield Relation("the unit norm of a quaternion", "derivations/euler_parameters.md", norm, {})
     turning = symbols.Omega
     slow = alpha.subs(B, A)
+    along_axis = cancel(-slow[0] / second).subs(SPIN, symbols.n * cos(TILT))  # omega at the angle gamma to the axis
+    title = "the angular velocity of a free symmetric body round its axis"
+    yield Relation(title, FREE, turning - along_axis, {turning: "rate of precession of"})
     title = "a free symmetric body whose angular velocity precesses"
     for word, rate, change in (("first", symbols.domega_1, -second), ("second", symbols.domega_2, first)):
         words = f"{word} component of the angular acceleration of"

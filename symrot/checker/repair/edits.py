@@ -6,7 +6,7 @@ tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which 
 
 import itertools
 import re
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
@@ -19,6 +19,7 @@ __all__ = [
     "FAULT_DESCRIPTIONS",
     "OPPOSITE",
     "Edit",
+    "bracketed",
     "flattened",
     "neighbours",
     "normalise_factors",
@@ -43,6 +44,7 @@ FAULT_DESCRIPTIONS = {
     "wrong_symbol": "a symbol is used in place of another one",
     "missing_term": "a term is missing",
     "extra_term": "there is a term too many",
+    "lost_brackets": "brackets are missing or enclose too little",
     "inertia_product_sign": "the products of inertia have the other sign",
     "wrong_sequence_type": "the rotations belong to another sequence",
     "two_faults": "two things are wrong",
@@ -60,10 +62,12 @@ COST = {
     "inertia_product_sign": 0.65, "sign_of_term": 0.8, "overall_sign": 0.75,
     "sin_cos_swap": 1.0, "wrong_symbol": 1.0, "half_angle": 1.05, "double_half_angle": 1.05, "factor": 1.1,
     "two_faults": 1.6, "wrong_sequence_type": 1.2, "extra_term": 1.5, "missing_term": 1.6,
+    "lost_brackets": 1.15,
     # added to the cost of the code
     "in_definition": 0.4, "number_off_by_one": 0.15, "name_transposed": 0.02,
     "rows_as_columns": 0.01, "names_exchanged": 0.1, "root_left_out": 0.1,
-    "cross_product_order": 0.02, "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
+    "cross_product_order": 0.02, "whole_cross_product_order": -0.04,
+    "factor_removed": 0.1, "product_doubled_or_halved": 0.05,
     "quotient_inverted": 0.1, "quaternion_conjugated": 0.05, "sequence_reversed": -0.3, "three_axes_changed": 0.2,
     # one fault everywhere in a tree
     "angle_everywhere": 0.9, "angle_everywhere_often": 1.07, "sin_cos_swap_everywhere": 0.95,
@@ -97,6 +101,7 @@ FEW = 3
 """Up to this number of occurrences of an angle, all of them are as likely to be wrong together as one alone."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
+INVERSE_OPPOSITE = {"asin": "acos", "acos": "asin"}
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
 _STEM = re.compile(r"([A-Za-z]+?)_?([0-9]+|[xyz]{1,2}|[sb])")
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -211,7 +216,7 @@ def _changes(
     elif node.kind == "product":
         yield from _of_product(node, matrices, order)
     elif node.kind == "call":
-        yield from _of_call(node, functions)
+        yield from _of_call(node, path, functions, matrices)
     elif node.kind == "name":
         for other in neighbours(node.value, names):
             yield "wrong_symbol", replace(node, value=other), 0.0
@@ -270,12 +275,33 @@ def _of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
         yield "two_faults", sum_of(signs), 0.0
     for factor in (number(2), number(Fraction(1, 2))) if len(terms) <= MOST_TERMS_IN_PAIRS else ():
         yield "factor", product([factor, node]), COST["product_doubled_or_halved"]
+    if len(terms) <= MOST_TERMS_IN_PAIRS:
+        for made in bracketed(terms):
+            yield "lost_brackets", made, 0.0
     for place, term in enumerate(terms):
         others = [*terms[:place], *terms[place + 1 :]]
         yield "sign_of_term", sum_of([*terms[:place], negated(term), *terms[place + 1 :]]), 0.0
         yield "extra_term", sum_of(others), 0.0
         for factor in (number(2), number(Fraction(1, 2))):
             yield "factor", sum_of([*terms[:place], product([factor, term]), *terms[place + 1 :]]), 0.0
+
+
+def bracketed(terms: Sequence[Node]) -> Iterator[Node]:
+    """Yield sums with brackets that may be missing: ``(a - b)*c`` for ``a - b*c``, ``c*(a - b)`` for ``c*a - b``."""
+    for first, last in itertools.combinations(range(len(terms)), 2):
+        before, after = terms[:first], terms[last + 1 :]
+        start, is_negative = (terms[first].args[0], True) if terms[first].kind == "neg" else (terms[first], False)
+        end, is_end_negative = (terms[last].args[0], True) if terms[last].kind == "neg" else (terms[last], False)
+        inside = terms[first + 1 : last]
+        if end.kind == "product" and end.args[0].kind != "inv":
+            *rest, factor = end.args
+            lone = negated(product(rest)) if is_end_negative else product(rest)
+            whole = product([sum_of([start, *inside, lone]), factor])
+            yield sum_of([*before, negated(whole) if is_negative else whole, *after])
+        if start.kind == "product" and start.args[1].kind != "inv":
+            factor, *others = start.args
+            whole = product([factor, sum_of([product(others), *inside, terms[last]])])
+            yield sum_of([*before, negated(whole) if is_negative else whole, *after])
 
 
 def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Iterator[Change]:
@@ -363,13 +389,24 @@ def _spelled_like(rotation: str) -> tuple[str, ...]:
     return tuple(rotation[:-1] + axis for axis in "xyz")
 
 
-def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
+def _scalars_in_front(node: Node, matrices: Callable[[Node], bool]) -> tuple[list[Node], Node]:
+    """Return the scalar factors of a vector, and the vector without them."""
+    scalars = [factor for factor in node.args if not matrices(factor)] if node.kind == "product" else []
+    rest = [factor for factor in node.args if factor not in scalars]
+    return (scalars, product(rest)) if scalars and rest else ([], node)
+
+
+def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Callable[[Node], bool]) -> Iterator[Change]:
     name, arguments = node.value, node.args
     if name in OPPOSITE:
         yield "sin_cos_swap", replace(node, value=OPPOSITE[name]), 0.0
         (argument,) = arguments
         yield "half_angle", replace(node, args=(product([argument, Node("inv", None, (number(2),))]),)), 0.0
         yield "double_half_angle", replace(node, args=(product([number(2), argument]),)), 0.0
+    elif name in INVERSE_OPPOSITE:
+        yield "sin_cos_swap", replace(node, value=INVERSE_OPPOSITE[name]), 0.0
+    elif name == "atan2":
+        yield "wrong_symbol", replace(node, args=arguments[::-1]), COST["names_exchanged"]
     elif name == "sqrt":
         yield "exponent", arguments[0], COST["root_left_out"]
     elif name in ROTATIONS:
@@ -380,7 +417,9 @@ def _of_call(node: Node, functions: Collection[str]) -> Iterator[Change]:
     elif name == "qmul":
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
-        yield "sign_of_term", replace(node, args=arguments[::-1]), COST["cross_product_order"]
+        first, second = (_scalars_in_front(argument, matrices) for argument in arguments)
+        made = product([*first[0], *second[0], replace(node, args=(second[1], first[1]))])
+        yield "sign_of_term", made, COST["cross_product_order" if path else "whole_cross_product_order"]
     elif name in functions:
         for other in neighbours(name, functions):
             yield "wrong_symbol", replace(node, value=other), 0.0

@@ -42,6 +42,7 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "half_angle": (HALF, "an angle is used where half the angle is needed"),
     "double_half_angle": (HALF, "half an angle is used where the whole angle is needed"),
     "sin_cos_swap": (HALF, "sine and cosine are exchanged"),
+    "lost_brackets": (HALF, "brackets are missing"),
     "wrong_symbol": (HALF, "one letter is used in place of another"),
     "missing_term": (HALF, "a term is missing"),
     "extra_term": (HALF, "there is a term too many"),

@@ -26,6 +26,8 @@ import tomllib
 from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
+from dataclasses import replace
 from itertools import islice, product
 from pathlib import Path
 from time import process_time
@@ -34,12 +36,16 @@ from typing import Any, NamedTuple
 from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 
 import symrot
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import is_latex
+from symrot.checker.claim.tree import Node
 from symrot.checker.latex.reader import latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
+from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.canonical_form import terms_of_equation
 from symrot.errors import SymrotError
@@ -55,8 +61,8 @@ GOOD, BAD = ("true", "conditional", "recognised"), ("false", "doubtful")
 AGREEING: dict[str, tuple[str, ...]] = {
     "sign": ("sign_of_term", "overall_sign", "inertia_product_sign", "quaternion_product_order", "commutator_order",
              "active_passive_transpose"),
-    "factor": ("factor",), "missing_square": ("exponent", "factor"), "exponent": ("exponent", "factor"),
-    "wrong_denominator": ("factor", "wrong_symbol", "sin_cos_swap", "exponent"),
+    "factor": ("factor", "half_angle", "double_half_angle"), "missing_square": ("exponent", "factor"), "exponent": ("exponent", "factor"),
+    "wrong_denominator": ("factor", "wrong_symbol", "sin_cos_swap", "exponent", "sign_of_term", "extra_term"),
     "half_angle": ("half_angle", "double_half_angle"), "missing_term": ("missing_term", "factor"),
     "swapped_function": ("sin_cos_swap",), "swapped_index": ("wrong_symbol",),
     "wrong_axis": ("wrong_symbol", "wrong_sequence_type"),
@@ -130,52 +136,73 @@ def offers(
         _same_terms(repair, original)
         or any(
             _equal_renamed(mine, other)
-            for mines, others in product(_equations(repair, given), _equations(original, given_with_original))
-            for mine, other in zip(mines, others, strict=True)
+            for mine, other in product(_equations(repair, given), _equations(original, given_with_original))
         )
         for repair in repairs
     )
 
 
 def _same_terms(repair: str, original: str) -> bool:
-    """Return whether two texts are the same equation, up to the order and the side of its terms."""
+    """Return whether two texts are the same equation, up to the order and the side of its terms.
+
+    Rx and R_x are the same rotation.
+    """
     forms = []
     for source in (repair, original):
-        try:
-            relations = [claim.relation for line in claims_of_reading(_reading(source), source) for claim in line]
-        except SymrotError:
-            return False
-        forms.append({terms_of_equation(*relation[1:], lambda tree: False) for relation in relations if relation})
+        sides = [map(_with_one_spelling, claim.relation[1:]) for claim in _claims(source) if claim.relation]
+        forms.append({terms_of_equation(left, right, lambda tree: False) for left, right in sides})
     return bool(forms[0] & forms[1])
 
 
-def _reading(source: str) -> Any:
-    """Return the first reading of a text."""
-    return latex_readings(source)[0] if is_latex(source) else readings_of(source)[0]
+def _with_one_spelling(tree: Node) -> Node:
+    """Return a tree in which the rotations about the axes are spelled Rx, Ry and Rz."""
+    value = str(tree.value).replace("_", "") if tree.kind == "call" and tree.value in ROTATIONS else tree.value
+    return replace(tree, value=value, args=tuple(map(_with_one_spelling, tree.args)))
 
 
-def _equations(source: str, given: Sequence[str] = ()) -> list[tuple[list[Expr], list[Expr]]]:
-    """Return the equations of a text, each as the entries of both sides, and as the primitive difference of the sides.
-
-    Only the other side is taken of an equation that gives a matrix a name.
-    """
+def _claims(source: str, given: Sequence[str] = ()) -> list[Claim]:
+    """Return the claims of all readings of a text; ``kx`` is a name in one and a product in the other."""
+    claims: list[Claim] = []
     try:
-        equations = [
-            claim.expanded.equation for line in claims_of_reading(_reading(source), source, given) for claim in line
-        ]
+        readings = list(latex_readings(source) if is_latex(source) else readings_of(source))
     except SymrotError:
         return []
-    forms = []
-    for equation in equations:
-        (left, shape), (right, own_shape) = flatten(equation.left), flatten(equation.right)
+    for reading in readings:
+        with suppress(SymrotError):
+            claims += [claim for line in claims_of_reading(reading, source, given) for claim in line]
+    return claims
+
+
+def _equations(source: str, given: Sequence[str] = ()) -> list[list[Expr]]:
+    """Return forms of the equations of a text: the entries of both sides, their primitive differences, and others.
+
+    If a side is a name or its rate, the other side alone is a form. So are the differences of the squares: a formula
+    for k^2 is the same as one for k.
+    """
+    forms: list[list[Expr]] = []
+    for claim in _claims(source, given):
+        assert claim.relation is not None
+        try:
+            equation = claim.expanded.equation
+        except SymrotError:
+            continue
+        sides = [flatten(equation.left), flatten(equation.right)]
+        for own, (entries, _) in zip(claim.relation[1:], reversed(sides), strict=True):
+            if _is_name(own):
+                forms.append(list(entries))
+        (left, shape), (right, own_shape) = sides
         if shape == own_shape:
-            forms.append(([*left, *right], [primitive(a - b) for a, b in zip(left, right, strict=True)]))
-            squares = [primitive(a**2 - b**2) for a, b in zip(left, right, strict=True)]
-            forms.append((squares, [primitive(a - b) for a, b in zip(left, right, strict=True)]))
-        else:
-            named = list(left if own_shape is None else right)
-            forms.append((named, named))
+            forms.append([*left, *right])
+            forms.append([primitive(a - b) for a, b in zip(left, right, strict=True)])
+            forms.append([primitive(a**2 - b**2) for a, b in zip(left, right, strict=True)])
     return forms
+
+
+def _is_name(tree: Node) -> bool:
+    """Return whether a tree is a name, a function of time, a derivative of one, or R_z(alpha)."""
+    while tree.kind == "call" and tree.value == "diff":
+        tree = tree.args[0]
+    return is_atom(tree) or (tree.kind == "call" and tree.value in ROTATIONS)
 
 
 def _equal_renamed(first: list[Expr], second: list[Expr]) -> bool:

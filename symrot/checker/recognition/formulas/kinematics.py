@@ -53,6 +53,12 @@ def vectors() -> Iterator[Named]:
     for place, added in (("a fixed origin", Matrix([0, 0, 0])), ("a moving origin", Matrix(symbols.acceleration))):
         yield f"acceleration of a point of a body with {place}", RELATIVE, added + on_body
         yield f"acceleration of a point in a rotating frame with {place}", RELATIVE, added + in_frame
+    apparent = 2 * Matrix(symbols.acceleration) - in_frame.subs(
+        dict(zip(symbols.relative_acceleration, symbols.acceleration, strict=True))
+    )  # a = a' + the rest, so a' = a - the rest
+    yield "acceleration seen in a rotating frame", RELATIVE, apparent
+    steady = dict.fromkeys(symbols.omega_rates, 0)
+    yield "acceleration seen in a frame that rotates steadily", RELATIVE, apparent.subs(steady)
     momentum = Matrix(symbols.momentum_b)
     rates = Matrix([Symbol(f"dL_{n}", real=True) for n in (1, 2, 3)])
     yield "torque by the rate of the angular momentum in the body", MOMENTUM, rates + OMEGA.cross(momentum)
@@ -155,7 +161,11 @@ def rotations() -> Iterator[Named]:
 
 
 def _entries() -> Iterator[Named]:
-    """Yield the matrix entries of a unit quaternion, and the quaternion components from the entries of a matrix."""
+    """Yield the matrix entries of a unit quaternion or axis, and the quaternion components from matrix entries."""
+    of_axis = _with_unit_axis(Matrix(rotation_vector.dcm_of_axis_angle()))
+    for i in range(3):
+        for j in range(3):
+            yield f"entry {i + 1}{j + 1} of the rotation matrix of a unit axis and an angle", UNIT, of_axis[i, j]
     matrix, homogeneous = quaternion.quaternion_to_dcm(Q), quaternion.quaternion_to_dcm(Q, "homogeneous")
     relation = quaternion.unit_relation(Q)
     for i in range(3):

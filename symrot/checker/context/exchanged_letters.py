@@ -1,0 +1,55 @@
+"""Formulas in which two letters are exchanged: the context of a claim says what each of them means."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations, islice
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import Node, text, walk, with_names
+from symrot.checker.repair.edits import COST
+from symrot.checker.verdict import Diagnosis, Repair, Verdict
+
+__all__ = ["by_exchanged_letters"]
+
+MOST_PAIRS = 10
+"""The most pairs of letters that are exchanged."""
+
+
+def by_exchanged_letters(
+    claim: Claim, named: NamedFormula, verdict: Verdict, judge: Callable[[Claim, NamedFormula], Verdict]
+) -> Verdict:
+    """Return the verdict "doubtful" in place of "definition" if a formula is right once two letters are exchanged.
+
+    ``judge`` returns the verdict on a claim. Only letters that the context names are exchanged, and quantities of the
+    same unit: other letters may mean anything.
+    """
+    if verdict.verdict != "definition" or not claim.context.meanings or claim.relation is None:
+        return verdict
+    units = {name: unit for name in _names(named.formula) if (unit := _unit(claim, name))}
+    pairs = (pair for pair in combinations(sorted(units), 2) if units[pair[0]] == units[pair[1]])
+    for first, second in islice(pairs, MOST_PAIRS):
+        tree = with_names(named.formula, {first: second, second: first})
+        if tree == named.formula:
+            continue
+        _, left, _ = claim.relation
+        sides = (named.side, tree) if left == named.side else (tree, named.side)
+        other = judge(claim.with_relation(("==", *sides), alternatives=()), named._replace(formula=tree))
+        if other.verdict in ("true", "recognised"):
+            code = "wrong_symbol"
+            repair = Repair(f"{text(named.side)} == {text(tree)}", code, COST[code] + COST["names_exchanged"])
+            return replace(
+                verdict, verdict="doubtful", reason="", repairs=(repair,), recognised_as=other.recognised_as,
+                diagnosis=Diagnosis(code, f"the letters {first} and {second} are exchanged"),
+            )  # fmt: skip
+    return verdict
+
+
+def _names(formula: Node) -> set[str]:
+    return {str(node.value) for _, node in walk(formula) if node.kind == "name"}
+
+
+def _unit(claim: Claim, name: str) -> str:
+    """Return the unit of a quantity that the context names, otherwise an empty text."""
+    meaning = claim.context.meaning_of(name)
+    return meaning.quantity.unit if meaning is not None else ""

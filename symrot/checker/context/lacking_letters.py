@@ -1,0 +1,81 @@
+"""Formulas that lack a term or a factor with letters of its own: the context of a claim says which formula is meant."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
+from typing import Any
+
+from sympy import Expr, Symbol, cancel
+
+from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import text
+from symrot.checker.recognition.known_formulas import Known
+from symrot.checker.recognition.pairing import absent_name
+from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS
+from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
+from symrot.exact.decide import decide
+from symrot.exact.printing import as_text
+
+__all__ = ["with_lacking_letters"]
+
+LEAST_LETTERS = 2
+"""The fewest letters that a formula has in common with the formula that is meant."""
+MOST_ASSIGNMENTS = 6
+"""The most ways of assigning the letters of a claim to the symbols of one derived formula."""
+
+Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
+
+
+def with_lacking_letters(
+    named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
+) -> Verdict | None:
+    """Return the verdict "doubtful" if a formula is a derived one without a term, or without a factor; otherwise None.
+
+    ``meant`` are the derived formulas whose names the context states word by word, and their values. A term is lacking
+    if the claim is what remains of such a formula when one of its other symbols is zero; a factor is lacking if their
+    quotient has none of the letters of the claim.
+    """
+    own = {*atoms_of([value])} - {time}
+    if is_matrix(value) or len(own) < LEAST_LETTERS:
+        return None
+    for known, target in meant:
+        if is_matrix(target):
+            continue
+        symbols = target.free_symbols - {time}
+        if len(own) >= len(symbols):
+            continue
+        for mapping in islice(assignments(known, target, own), MOST_ASSIGNMENTS):
+            code = _fault(target.xreplace(dict(mapping)), value, symbols - {*mapping})
+            if code:
+                return _verdict(named, known, target, mapping, code)
+    return None
+
+
+def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
+    """Return the fault of a formula that lacks symbols of another one, or an empty text."""
+    for symbol in sorted(lacking, key=str):
+        rest = target.subs(symbol, 0)
+        if not rest.has(symbol) and rest.is_finite is not False and decide(rest, value).verdict == "true":
+            return "missing_term"
+    quotient = cancel(target / value)
+    return "factor" if quotient.free_symbols and quotient.free_symbols <= lacking else ""
+
+
+def _verdict(named: NamedFormula, known: Known, target: Expr, mapping: Mapping[Expr, Expr], code: str) -> Verdict:
+    names = {old.name: as_text(new) for old, new in mapping.items() if isinstance(old, Symbol)}
+    renaming: dict[str, str | None] = dict(names)
+    for old, new in names.items():
+        if old.startswith("d") and (rate := re.match(r"diff\((\w+)", new)):
+            renaming[old[1:]] = rate[1]  # domega_3 for diff(omega_z(t), t): omega_z is the name of omega_3
+    others = {symbol: Symbol(absent_name(symbol.name, renaming)[0], real=True)
+              for symbol in target.free_symbols - {*mapping} - {time}}  # fmt: skip
+    whole = as_text(target.xreplace({**others, **mapping}))
+    repair = Repair(f"{text(named.side)} == {whole}", code, COST["missing_term"])
+    own = {old: new for old, new in names.items() if old != new}
+    return Verdict(
+        "doubtful", diagnosis=Diagnosis(code, FAULT_DESCRIPTIONS[code]), repairs=(repair,),
+        recognised_as=(Identification(known.name, "", own, known.source),),
+    )  # fmt: skip
