@@ -86,18 +86,48 @@ def stepped(
         series = coefficients(recurrences(rates), method.order, values, functions, number)
         return [_polynomial(each, dt) for each in series]
 
+    bare, factors = _without_factors(rates)
+
     def moved(weights: Mapping[int, Fraction]) -> list[Any]:
+        stages = [
+            [stage for stage, own in weights.items() if own == weight] for weight in dict.fromkeys(weights.values())
+        ]
         result = []
         for i, name in enumerate(states):
-            terms = [number(weight) * dt * slopes[stage][i] for stage, weight in weights.items()]
-            result.append(sum(terms, start=values[name]))
+            value = values[name]
+            for equal in stages:  # stages of equal weight are added first
+                first, *others = (slopes[stage][i] for stage in equal)
+                weight = weights[equal[0]] * factors[i]
+                move = number(abs(weight)) * dt * sum(others, start=first)
+                value = value + move if weight > 0 else value - move
+            result.append(value)
         return result
 
     slopes: list[list[Any]] = []
     for node, weights in zip(method.nodes, method.stages, strict=True):
         point = dict(values) | dict(zip(states, moved(weights), strict=True)) | {"t": values["t"] + number(node) * dt}
-        slopes.append(list(rates.evaluate(point, functions, number).values()))
+        slopes.append(list(bare.evaluate(point, functions, number).values()))
     return moved(method.weights)
+
+
+def _without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
+    """Return rates without the numbers by which whole formulas are multiplied, such as 1/2, and these numbers.
+
+    A step multiplies each of its weights by them once, instead of each rate at each stage.
+    """
+    outputs, factors = [], []
+    for name, node in rates.outputs:
+        factor = Fraction(1)
+        while node[0] in ("*", "neg"):
+            if node[0] == "neg":
+                node, factor = node[1], -factor
+            elif node[1][0] == "number":
+                node, factor = node[2], factor * node[1][1]
+            else:
+                break
+        outputs.append((name, node))
+        factors.append(factor)
+    return replace(rates, outputs=tuple(outputs)), factors
 
 
 def _polynomial(series: Sequence[Any], dt: Any) -> Any:
