@@ -383,7 +383,7 @@ class Trajectory(MotionSamples):
         """
         if quantities is None:
             present = ("omega", "quaternion") if self.has_attitude else ("omega",)
-            derivatives = [item.name for item in self.sensitivities.labelled()] if self.sensitivities else []
+            derivatives = [item.name for item in self.sensitivities._labelled()] if self.sensitivities else []
             quantities = tuple(dict.fromkeys((*present, *self.scene.output.quantities, *derivatives)))
         return symrot.save(self, path, quantities)
 

@@ -112,4 +112,4 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
 def _derivatives(trajectory: Any) -> dict[str, Labelled]:
     """Return the labelled derivatives of a trajectory by initial values and constants, by name; empty without them."""
     sensitivities = getattr(trajectory, "sensitivities", None)
-    return {} if sensitivities is None else {item.name: item for item in sensitivities.labelled()}
+    return {} if sensitivities is None else {item.name: item for item in sensitivities._labelled()}

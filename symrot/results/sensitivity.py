@@ -102,7 +102,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         """The variables as data for JSON, which a file of samples contains: names, units and requested groups."""
         return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
 
-    def labelled(self) -> list[Labelled]:
+    def _labelled(self) -> list[Labelled]:
         """Return the derivatives with labels, three quantities for each variable, such as ``omega_by_weight``."""
         items = []
         for number, (variable, unit) in enumerate(zip(self.variables, self.units, strict=True)):
