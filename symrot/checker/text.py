@@ -53,6 +53,9 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
+CALLS_FOR_ARRAYS = ("qmul(", "eye(")
+"""Calls that answers have only if the claim has one of them."""
+
 ZERO = Node("number", Fraction(0))
 
 AS_TYPED = ("degrees",)
@@ -392,8 +395,10 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     """Return a repair in the notation of the claim, with the positions at which it differs from the claim."""
     if claim.relation is None:
         return replace(repair, text=notation.rewritten(repair.text))
-    texts = relation_text(claim.relation), repair.text
-    before, after = (notation.rewritten(_with_plain_arrays(each)) for each in texts)
+    texts: Sequence[str] = (relation_text(claim.relation), repair.text)
+    if not any(call in claim.text for call in CALLS_FOR_ARRAYS):
+        texts = list(map(_with_plain_arrays, texts))
+    before, after = map(notation.rewritten, texts)
     changed, text = changed_spans(before, after), after
     return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
 
