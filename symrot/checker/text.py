@@ -15,6 +15,7 @@ from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
 from symrot.checker.claim.reader import Declared, Reading, readings_of
+from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
 from symrot.checker.claim.tree import Node, walk
@@ -37,6 +38,7 @@ from symrot.checker.units.conversion import (
 )
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.errors import InputError
+from symrot.exact import normal_form
 
 __all__ = ["verdict_on_readings", "verdict_on_text"]
 
@@ -154,10 +156,15 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
     Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
+    beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
+    numbers = verdict_on_text(end) if end else None
+    while not unit and numbers is not None and numbers.verdict != "true" and end.count("=") > 1:
+        first, _, end = map(str.strip, end.partition("="))  # the letters of a formula such as 2 g h were read as units
+        beginning, numbers = f"{beginning} = {first}", verdict_on_text(end)
+    if not unit and numbers is not None and numbers.verdict == "true":
+        unit = end.rpartition("=")[2].strip()
     if not unit:
         return verdict
-    beginning, end = numeric_end(source)
-    numbers = verdict_on_text(end) if end else None
     notes = tuple(note for note in verdict.notes if not note.endswith("is read as a name, not as a unit"))
     if numbers is not None:
         notes = (*numbers.notes, f"{end} is {OUTCOMES[numbers.verdict]}; {beginning} has letters and is not decided")
@@ -493,8 +500,17 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
             link = notation.relation(claim.relation)
             note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
             verdict = replace(under_name, notes=(*under_name.notes, note))
+        elif verdict.verdict == "false" and _names(left) and not _names(right) - {"pi"} and _depends_on_letters(claim):
+            letters = " and ".join(sorted(_names(left) - {"pi"}))
+            verdict = Verdict("definition", reason=f"it has numbers for {letters}, which nothing here gives")
         decided.append(verdict)
     return decided
+
+
+def _depends_on_letters(claim: Claim) -> bool:
+    """Return whether the value of the left side of a claim depends on a letter, as that of sin²x + cos²x does not."""
+    left = claim.equation.left
+    return not is_matrix(left) and bool(normal_form(left).free_symbols)
 
 
 def _names(tree: Node) -> set[str]:

@@ -54,6 +54,12 @@ ENDS = frozenset([
 """Items that cannot start a factor."""
 
 
+TRIPLE_PRODUCT = re.compile(
+    r"\\times\s*(?:\\left)?\([^()+-]*\\times|\([^()]*\\times[^()]*\)\s*\\times|\)\s*\\times\s*(?:\\left)?\("
+)
+r"""A product ``a\times(b\times c)``, ``(a\times b)\times c`` or ``(a + b)\times(a - b)``."""
+
+
 class SumsPart(Cursor):
     """The methods of the LaTeX reader that parse sums, products, powers, brackets and matrices."""
 
@@ -93,7 +99,7 @@ class SumsPart(Cursor):
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
             if operator.text == "\\times" and any(kinds) and not all(kinds):
                 self.note_vector(right if kinds[0] else left)
-            elif operator.text == "\\times" and not any(kinds) and self.has_bare_vectors(left, right):
+            elif not any(kinds) and self.has_bare_vectors(left, right, operator.text):
                 for side in (left, right):
                     self.note_vector(last_factor(side))
             if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
@@ -108,17 +114,30 @@ class SumsPart(Cursor):
                 left, crossed = Node("call", "cross", (left, right)), True
         return negated(left) if negative else left
 
-    def has_bare_vectors(self, left: Node, right: Node) -> bool:
-        r"""Return whether letters without a mark around ``\times`` are vectors, as in ``\omega\times r``.
+    def has_bare_vectors(self, left: Node, right: Node, sign: str) -> bool:
+        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors, as in ``\omega\times r``.
 
-        They are if books use both letters for vectors, and if the text has another product of vectors, the first letter
-        is r, or one letter is an angular velocity or acceleration. ``W = F\times d`` may be a product of numbers.
+        They are if books use both letters for vectors, and if the text shows it: by both signs, by a triple product, by
+        ``a\times b`` beside ``b\times a``, by an angular velocity or acceleration, by r as the first letter, by
+        ``a\times a = 0``, or by the lengths of both beside the cosine or sine of an angle. ``W = F\times d`` may be a
+        product of numbers.
         """
         names = [name_of(last_factor(side)) for side in (left, right)]
-        products = self.source.count("\\times") + self.source.count("\\cdot") + self.source.count("\\cross")
+        if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
+            return False
+        function = {"\\times": "\\sin", "\\cdot": "\\cos"}[sign]
+        lengths = [rf"\|\s*\\?{re.escape(name)}\s*\\?(r?Vert)?\|" for name in names]
+        if function in self.source and all(re.search(length, self.source) for length in lengths):
+            return True
         letters = [re.split("[_0-9]", name)[0] for name in names]
-        is_certain = products > 1 or letters[0] == "r" or bool({"omega", "Omega", "alpha"} & {*letters})
-        return self.flips is not None and all(map(is_usual_vector, names)) and is_certain
+        is_zero = names[0] == names[1] and re.search(r"=\s*0\b|\b0\s*=", self.source) is not None
+        is_turned = names[0] != names[1] and all(
+            re.search(rf"{re.escape(first)}\s*\\times\s*\\?{re.escape(second)}(?![A-Za-z])", self.source)
+            for first, second in (names, names[::-1])
+        )
+        is_certain = letters[0] == "r" or bool({"omega", "Omega", "alpha"} & {*letters}) or is_turned
+        is_certain = is_certain or "\\cdot" in self.source or TRIPLE_PRODUCT.search(self.source) is not None
+        return sign == "\\times" and (is_certain or is_zero)
 
     def is_cross_matrix(self) -> bool:
         r"""Return whether a cross is directly before a closing bracket, as in the skew matrix ``[a \times]``."""
