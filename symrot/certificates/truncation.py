@@ -7,8 +7,8 @@ the first n derivatives of ``x(h) - S(h)`` vanish at h = 0, so that by Taylor's 
 
 where a is a Taylor coefficient of the motion at a state between start and end, and b one of S at a size between 0 and
 h. Intervals contain both: first a box is found that the motion provably does not leave during the step (its rates on
-the box keep it inside); then the coefficients are computed on that box. Without exact polynomials (see below) the box of
-the start is divided where this makes the bound smaller.
+the box keep it inside); then the coefficients are computed on that box. Without exact polynomials, see below, the box
+of the start is divided where this makes the bound smaller.
 
 If the rates are polynomials, as those of most scenes are, the difference is expanded further: its coefficients of the
 orders n + 1 to m - 1 are exact polynomials in the start, in which equal terms of motion and method cancel; only the
