@@ -65,7 +65,10 @@ def place_of(name: str) -> str:
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a derived formula may be the formula for a quantity in a context, judged by the formula's name."""
+    """Return whether a derived formula fits a quantity of the claim and the stated context.
+
+    The formula's name tells: "moment of inertia of a rod about an end" does not fit a context that states the centre.
+    """
     return not any(misfits(context, name, quantity))
 
 

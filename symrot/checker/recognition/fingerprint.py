@@ -197,9 +197,10 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula of the usual kind; None for any other formula.
+    """Return the fingerprint of a formula from its values where all atoms but one are equal.
 
-    A formula of the usual kind has a value where all atoms are equal, and changes if any single atom changes.
+    ``entries`` are the entries of the formula, ``written`` its atoms. The result is None if the formula has no value at
+    one of these points, as ``1/(x - y)``, or does not depend on one of its atoms.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
