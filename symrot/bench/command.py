@@ -107,17 +107,18 @@ def _stability(options: Namespace, say: Progress) -> ModeReport:
 
 
 STUDIES: dict[str, str] = {
-    "taylor": "Taylor series against heyoka in all settings and against loops by hand in C, at equal error",
+    "taylor": "Taylor series against heyoka with all settings and against handwritten loops in C, at equal error",
     "ensemble": "many motions in SIMD lanes against heyoka's batch and ensemble modes",
     "dense": "20 000 samples of one motion against heyoka's dense output",
-    "kernels": "emitted kernels against those of other tools, in operations and nanoseconds",
+    "kernels": "emitted kernels against kernels of other tools, in operations and nanoseconds",
     "overhead": "a call from Python against the bare call in C",
-    "starts": "another start by component, and ensembles of 10 to 100 000 motions, exact and stepped",
-    "stepper": "DOP853 in C against one by hand and SciPy's, at equal tolerance",
-    "closed_form": "nanoseconds per sample of the closed forms, and their set-up",
-    "long": "1e6 revolutions by stepping: energy, attitude and time",
-    "start": "`symrot run` from a cold and from a warm start",
-    "derive": "how long deriving takes",
+    "starts": "parts of a call with another initial state, and ensembles of 10 to 100 000 motions in closed form and "
+    "by steps",
+    "stepper": "DOP853 in C against a handwritten DOP853 and SciPy's, at equal tolerance",
+    "closed_form": "nanoseconds per sample of closed forms, and the time of their set-up",
+    "long": "errors of energy and attitude after 1e6 revolutions by steps, and the time",
+    "start": "`symrot run` with an empty and with a filled cache",
+    "derive": "the time of derivations",
     "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
 }
 """Studies of a single question: the name of a module in :mod:`symrot.bench` -> the question."""
@@ -143,11 +144,11 @@ MODES: tuple[Mode, ...] = (
     ),
     Mode("--suite", "study every motion of the suite, with figures; continue after an interruption",
          SWEEP | {"json", "directory", "out"}, _suite, {"action": "store_true"}),
-    Mode("--skip", "measure what specialised kernels save, for fixed scenes or for SCENE",
+    Mode("--skip", "measure the time that specialised kernels save, for fixed scenes or for SCENE",
          frozenset({"scene", "quick", "plot", "out", "json"}), _skip, {"action": "store_true"}),
     Mode("--stability", "study how errors grow over 1e5 revolutions, or over the span of SCENE",
          frozenset({"scene", "long", "plot", "json", "out"}), _stability, {"action": "store_true"}),
-    Mode("--list", "list the modes, and the studies of one question each", frozenset({"json"}), _list,
+    Mode("--list", "list the modes, and further studies with the commands that run them", frozenset({"json"}), _list,
          {"action": "store_true"}),
 )  # fmt: skip
 """All modes of ``symrot bench``."""

@@ -2,9 +2,9 @@
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The motions are listed in :mod:`symrot.bench.taylor`; initial states differ by a tenth. There are 8 trajectories over
-the whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same right-hand side with its
-constants as numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through
+The motions are listed in :mod:`symrot.bench.taylor`; the initial states of an ensemble differ by about a tenth. There
+are 8 trajectories over the whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same
+right-hand side with its constants as numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through
 ``ensemble_propagate_until`` and its batch form with one thread. Runs are interleaved; the least processor time counts,
 since wall-clock time grows with other work on the machine. The error is the largest error of all trajectories (of 4096,
 only the first 16 are compared) against heyoka in long double, which is checked against a series in 40 digits. For each

@@ -402,7 +402,7 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
     lines = [
         f"{name:51}" + "".join(f"{shape:>10}" for shape in SHAPES),
         *map(_line, contestants),
-        f"  symrot to the best of the others: {', '.join(parts)}",
+        f"  symrot divided by the best of the others: {', '.join(parts)}",
     ]
     own, floor = contestants[0].seconds["many"], contestants[-1].seconds["many"]
     if own and floor:

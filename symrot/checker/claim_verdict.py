@@ -11,6 +11,7 @@ from symrot.checker.claim.named_formula import NamedFormula, named_formula, open
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
+from symrot.checker.symmetry_axis import in_claim, with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -111,10 +112,13 @@ def _on_name(
     decided, so that None stands in the place of a decision.
     """
     if claim.context.sign_of_products == "plus":
-        from symrot.checker.context.product_signs import in_claim, with_minus_sign
+        from symrot.checker.context import product_signs
 
-        result = _on_name(with_minus_sign(claim), repair, formula_of)
-        return result and (None, replace(in_claim(result[1]), text=claim.text))
+        result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
+        return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))
+    if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
+        result = _on_name(with_axis_z(claim), repair, formula_of)
+        return result and (None, replace(in_claim(result[1], axis), text=claim.text))
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None

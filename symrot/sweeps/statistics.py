@@ -294,5 +294,5 @@ def _keys(values: Floats) -> Keys:
 
 
 def _values(keys: Keys) -> Floats:
-    """Return the doubles of integers from :func:`_keys`."""
+    """Return the doubles to which :func:`_keys` assigns the given integers."""
     return np.where(keys & _SIGN, keys ^ _SIGN, ~keys).view(np.float64)

@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 
 from symrot.bench import check, command, kernels, skip
+from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
 from symrot.bench.comparison import reference as reference_module
-from symrot.bench.comparison import suite
+from symrot.bench.comparison import steps, suite
 from symrot.bench.comparison.contestants import CONTESTANTS, chosen
 from symrot.bench.comparison.exact_path import ExactPath
 from symrot.bench.comparison.peers import scalar_kernel
@@ -25,6 +26,7 @@ from symrot.bench.comparison.race import Measured, race
 from symrot.bench.comparison.reference import REFERENCES, longer, reference
 from symrot.bench.comparison.work_precision import DECADES, against, decades, digest, study
 from symrot.cli.main import main
+from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.errors import InputError, SymrotError
 from symrot.planning.plan import make_plan
@@ -528,6 +530,38 @@ def test_a_kernel_without_a_textbook_formula_is_refused_in_a_sentence(name, caps
     assert caught.value.code == 2
     assert "expected a kernel with a textbook formula (quaternion_dcm, " in (said := capsys.readouterr().err)
     assert said.endswith(f"got {name!r}\n")
+
+
+@pytest.mark.parametrize("name", ["quaternion_dcm_by_q", "euler_zyx_body_rates_by_angles_by_omega"])
+def test_derivatives_need_no_more_operations_than_those_of_other_tools(name):
+    """SymPy always takes part; SymForce and CasADi do where they are installed."""
+    operations, missing = kernels.counts(name)
+    totals = {tool: count.total() for tool, count in operations.items()}
+    assert "SymPy cse" in totals and set(missing) <= {"SymForce", "CasADi"}
+    assert totals.pop("symrot") <= min(totals.values())
+
+
+def test_textbook_derivatives_are_those_of_the_kernel():
+    """The formulas that the other tools get have the values of symrot's kernel."""
+    name = "heavy_top_by_omega_by_q"
+    point = {each: Fraction(k + 2, 7) for k, each in enumerate(input_names(name))}
+    theirs = textbook_program(name).evaluate(point, {}, Fraction)
+    assert theirs == kernel_program(name).evaluate(point, {}, Fraction)
+
+
+def test_the_operations_are_counted_in_one_command(capsys):
+    kernels.main(["--count", "--kernels", "quaternion_dcm_by_q"])
+    assert "quaternion_dcm_by_q: symrot 27, SymPy cse " in capsys.readouterr().out
+
+
+def test_steps_of_other_tools_are_left_out_where_they_are_not_installed(capsys, monkeypatch):
+    def absent(step):
+        raise ImportError
+
+    monkeypatch.setattr(steps, "PEERS", {"CasADi": absent})
+    steps.main(["--count", "--scenes", "tumbling_prism"])
+    assert "tumbling_prism_rk4_step: symrot 193" in (report := capsys.readouterr().out)
+    assert "not installed, left out: CasADi" in report
 
 
 def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():

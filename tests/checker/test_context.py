@@ -338,3 +338,12 @@ def test_letters_with_other_meanings_accuse_nobody():
     """The vector form of a gyroscope's moment is correct, whatever words are used for its rates."""
     claim = r"\mathbf M = I\,\boldsymbol\Omega\times\mathbf p"
     assert symrot.check(claim, where=["p = spin", "Omega = precession rate"]).verdict in ("recognised", "definition")
+
+
+@pytest.mark.parametrize(("claim", "body", "verdict"), [
+    ("I_x = 3/10 m a²", "solid cone with base radius a, axis x", "true"), ("I_z = 3/10 m a²", "solid cone with base radius a, axis x", "doubtful"),
+    ("I_y = ½ m r²", "cylinder with axis along y", "true"), ("I_z = m L²/12", "rod along the x axis", "recognised"),
+    ("I_zz = m(a²+b²)/12", "box with sides a, b and c along x, y and z", "recognised"),
+])  # fmt: skip
+def test_a_body_may_have_another_axis_of_symmetry(claim, body, verdict):
+    assert symrot.check(claim, body=body, repair=False).verdict == verdict

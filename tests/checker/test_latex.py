@@ -196,3 +196,22 @@ def test_latex_in_a_file_of_claims(tmp_path):
     )
     (verdict,) = symrot.check_file(path)
     assert (verdict.verdict, verdict.text) == ("true", "diff(R*r, t) == cross(omega, R*r)")
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    (r"a\times(b\times c) = b(a\cdot c) - c(a\cdot b)", "true"), (r"a\times(b\times c) = b(a\cdot c) + c(a\cdot b)", "false"),
+    (r"v = \omega\times r", "recognised"), (r"M = I\dot\omega + \omega\times I\omega", "recognised"),
+    (r"\dot L = M - \omega\times L", "recognised"), (r"a\times a = 0", "true"), (r"a\times a = a^2", "true"),
+    (r"a\times b = -b\times a", "true"), (r"2(a\times b + b\times c) = 2b\times(a + c)", "true"),
+    (r"a\cdot b = |a||b|\cos\theta", "definition"), (r"|a\times b| = |a||b|\sin\theta", "definition"),
+    (r"|a\cdot b| = |a|\cdot|b|", "true"), (r"\hat{\imath}\times\hat{\jmath} = \hat k", "true"), (r"m\times g = mg", "true"), (r"W = F\times d", "definition"),
+    (r"A = \frac12 b\times h", "definition"), (r"I = \frac25\times m\times r^2", "recognised"),
+])  # fmt: skip
+def test_letters_around_a_cross_are_vectors_where_the_text_shows_it(claim, verdict):
+    """``a\\times b`` was the product of two numbers, and the rule for a triple product false."""
+    assert symrot.check(claim, repair=False).verdict == verdict
+
+
+def test_powers_of_brackets_and_of_numbers_side_by_side_are_read():
+    for claim in (r"\left(a^b\right)^c = a^{bc}", r"(2^n)^2 10^{a} 10^{b} = 2^{2n} 10^{a+b}"):
+        assert symrot.check(claim).verdict in ("true", "conditional")

@@ -50,3 +50,19 @@ def test_a_star_before_a_blank_may_be_a_conjugate(text, verdict):
 ])  # fmt: skip
 def test_the_rates_of_an_aircraft_belong_to_roll_pitch_and_yaw(text, verdict):
     assert symrot.check(text).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("v = sqrt(2 g h) = sqrt(2 · 9.81 m/s² · 5 m) = 9.9 m/s", "definition"), ("I = ½ m r² = 0.5 · 2 · 0.1² = 0.01", "definition"),
+    ("I = ½ m r² = 0.5 · 2 · 0.1² = 0.02", "false"), ("T = sin²x + cos²x = 2", "false"), ("I = 0.02", "definition"),
+])  # fmt: skip
+def test_numbers_put_into_a_formula_are_no_identity(text, verdict):
+    assert symrot.check(text, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "sequence", "verdict"), [
+    ("R_11 = cos ψ cos φ - cos θ sin φ sin ψ", "ZXZ", "recognised"), ("R_31 = -sin θ", "ZYX", "recognised"),
+    ("R_31 = sin θ", "ZYX", "definition"),
+])  # fmt: skip
+def test_an_entry_of_the_matrix_of_a_stated_sequence(text, sequence, verdict):
+    assert symrot.check(text, sequence=sequence, repair=False).verdict == verdict

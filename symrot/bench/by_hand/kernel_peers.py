@@ -35,10 +35,12 @@ __all__ = [
     "PEERS_IN_C",
     "TEXTBOOK",
     "by_hand",
+    "casadi_counts",
     "casadi_function",
     "counted",
     "derivatives_of",
     "input_names",
+    "products",
     "textbook",
     "textbook_program",
 ]
@@ -122,21 +124,21 @@ def _outputs(signature: Signature) -> list[str]:
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
     """Return a program that computes the common terms first and then the results, without further simplification."""
     signature = kernel_program(name).signature
-    temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
-    outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
+    temporaries = tuple((str(symbol), products(to_node(value))) for symbol, value in common)
+    outputs = tuple(zip(_outputs(signature), (products(to_node(value)) for value in results), strict=True))
     return c_function(Program(signature, temporaries, outputs), "static inline ")
 
 
-def _products(node: Node) -> Node:
+def products(node: Node) -> Node:
     """Return a formula with integer powers written as products, since C has no power operator."""
     if not children(node):
         return node
     if node[0] == "**":
-        base = _products(node[1])
+        base = products(node[1])
         return reduce(lambda left, right: ("*", left, right), [base] * node[2])
     if node[0] == "call":
-        return ("call", node[1], tuple(map(_products, node[2])))
-    return (node[0], *map(_products, node[1:]))
+        return ("call", node[1], tuple(map(products, node[2])))
+    return (node[0], *map(products, node[1:]))
 
 
 def _sympy(name: str) -> str:
@@ -214,13 +216,13 @@ def casadi_function(name: str, program: Callable[[str], Program] = textbook_prog
                              for one in casadi.horzsplit(casadi.DM.eye(len(rows))))),
         ]  # fmt: skip
     made = [
-        _counted_casadi(x, casadi.vertcat(outputs, *(slopes[rows.index(o), variables.index(v)] for o, v in entries)))
+        casadi_counts(x, casadi.vertcat(outputs, *(slopes[rows.index(o), variables.index(v)] for o, v in entries)))
         for slopes in ways
     ]
     return min(made, key=lambda each: each[1].total())
 
 
-def _counted_casadi(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
+def casadi_counts(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
     """Return a function of CasADi in which common subexpressions are computed once, and its operations by kind."""
     import casadi
 

@@ -195,9 +195,10 @@ def _rows(results: Mapping[str, Any]) -> list[list[str]]:
 
 
 LEGEND = (
-    "Time of each method over the time of symrot's steppers (closed forms excluded) at equal error: median over the "
-    "decades of the error from 1e-2 down, and in brackets the least. Then the least error of each method, and the "
-    "difference between the references. Processor time of calls from Python, medians of rounds, on one core."
+    "Time of each method divided by the time of symrot's steppers (without closed forms) at equal error: the median "
+    "over the powers of ten of the error from 1e-2 down, and in brackets the least ratio. Then the least error of "
+    "each method, and the difference between the references. Processor time of calls from Python, medians over "
+    "rounds, on one core."
 )
 
 
@@ -205,7 +206,13 @@ def lines(results: Mapping[str, Any]) -> list[str]:
     """Return the table of the suite as lines of text; the first is the title."""
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
-    return ["The suite: times of others over symrot's, at equal error", "", *table, "", *columns([[LEGEND]])]
+    return [
+        "The suite: times of other methods divided by symrot's, at equal error",
+        "",
+        *table,
+        "",
+        *columns([[LEGEND]]),
+    ]
 
 
 def page(results: Mapping[str, Any]) -> str:

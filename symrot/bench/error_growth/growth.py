@@ -173,8 +173,8 @@ METHODS = (
     Method("taylor, plain", "the same without projection", math.inf, math.inf, _taylor(False)),
     Method("dop853", "Dormand-Prince 8(5,3) in C", math.inf, math.inf, _dop853),
     Method("SciPy DOP853", "solve_ivp at its least rtol", 1e3, 1e4, _scipy),
-    Method("RK4, normalised", "200 steps a turn, q renormalised after each", 1e5, 1e6, _rk4(True)),
-    Method("RK4", "200 steps a turn, by hand in C", 1e5, 1e6, _rk4(False)),
+    Method("RK4, normalised", "200 steps per revolution, q renormalised after each step", 1e5, 1e6, _rk4(True)),
+    Method("RK4", "200 steps per revolution, handwritten in C", 1e5, 1e6, _rk4(False)),
 )
 
 

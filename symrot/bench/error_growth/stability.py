@@ -75,7 +75,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     results["points"] = [
         {"motion": name, **each._asdict()}
         for name, body, omega, size in (
-            ("steady, points across the axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
+            ("steady, points perpendicular to the axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
             ("chen, p. 23: cylinder", CYLINDER, (1, 0, 1), (1.0, 1.0, 3.0)),
         )
         for each in carried(_scene(name, body, omega), CARRIED_FOR, STEPS, size)
@@ -88,7 +88,7 @@ def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     revolutions = 10.0 ** np.linspace(1, power, 6 * (power - 1) + 1)
     tracks = []
     for omega in STARTS:
-        say("truth in 30 digits ..")
+        say("reference in 30 digits ..")
         scene = _scene("free plate", {"principal": list(PLATE)}, omega)
         size = math.sqrt(sum(float(w) ** 2 for w in scene.initial.omega_b))
         tracks.append(Track(scene, revolutions * (2.0 * math.pi / size), periodic=True))
@@ -116,7 +116,7 @@ def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[st
             f"{scene.name}: span: expected a last time after the first, got {scene.span.start} to {scene.span.stop} s"
         )
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
-    say(f"{scene.name}: truth in 30 digits ..")
+    say(f"{scene.name}: reference in 30 digits ..")
     track = Track(scene, times, periodic=False)
     curves = []
     for curve in growth(track, long, say):
@@ -204,7 +204,7 @@ def _growth_lines(data: Any) -> list[str]:
     else:
         places = [round(k * (len(at) - 1) / 6) for k in range(1, 7)]
         heads = [f"{at[i]:.4g} s" for i in places]
-    text_lines = [data["title"], "", "error of the attitude, rad, against 30 digits"]
+    text_lines = [data["title"], "", "error of the attitude, rad, compared with 30 digits"]
     rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
     drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]
     for curve in data["curves"]:
@@ -241,10 +241,10 @@ def _pass_lines(rows: Any) -> list[str]:
 
     table = [["  nearest", "quaternion", "error", f"{SEQUENCE}, switched", "error", f"{SEQUENCE} alone", "error"]]
     for row in rows:
-        distance = "the lock itself" if row["distance"] == 0 else f"{row['distance']:.0e} rad"
+        distance = "gimbal lock itself" if row["distance"] == 0 else f"{row['distance']:.0e} rad"
         table.append([f"  {distance}", *cells(row, "quaternion"), *cells(row, "switching"), *cells(row, "angles")])
     text_lines = [
-        "a pass by gimbal lock: steps of the Taylor method, and the error, by what the state is",
+        "a pass near gimbal lock: steps of the Taylor method and error, for each choice of the integrated state",
         *columns(table, right=tuple(range(1, 7))),
     ]
     failed = [row["angles"]["failed"] for row in rows if "failed" in row["angles"]]
@@ -252,7 +252,7 @@ def _pass_lines(rows: Any) -> list[str]:
 
 
 def _point_lines(results: Any) -> list[str]:
-    text_lines = [f"points carried along their velocity for {CARRIED_FOR:g} s", *(
+    text_lines = [f"points moved along their velocity for {CARRIED_FOR:g} s", *(
         f"  {'proven' if law['holds'] else 'NOT PROVEN'}: {law['law']}" for law in results["laws"])]  # fmt: skip
     rows = [["  motion", "step", "h, s", "growth", "by the law", "strain", "error"]]
     before = ""

@@ -127,7 +127,7 @@ def _passes(axes: Any, rows: Any) -> None:
     axes.set_ylim(0, None)
     axes.grid(True)
     axes.set_title("Steps past gimbal lock, by state")
-    axes.set_xlabel("nearest distance to lock (rad); at the lock itself the angles alone fail")
+    axes.set_xlabel("least distance to gimbal lock (rad); at 0 the angles alone fail")
     axes.set_ylabel("steps")
     axes.legend(loc="upper left")
 
@@ -153,8 +153,8 @@ def _points(axes: Any, rows: Any) -> None:
     axes.set_ylim(0.95, 1.08 * max(row["growth"] for row in chosen))
     axes.set_axisbelow(True)
     axes.grid(True, axis="y")
-    axes.set_title("Size of a body carried by its points' velocities for 10 s")
-    axes.set_ylabel("size over that at the start")
+    axes.set_title("Size of a body whose points move along their velocities for 10 s")
+    axes.set_ylabel("size divided by the initial size")
     axes.legend(loc="upper right")
 
 

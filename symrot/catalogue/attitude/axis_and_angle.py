@@ -162,7 +162,7 @@ def _half_turn(d: Derivation) -> None:
     d.notation({"R": Matrix(matrix)})
     symmetric = matrix + matrix.T + (1 - matrix.trace()) * eye(3)
     d.step(
-        r"A similar matrix gives the axis at every angle, without loss of digits near $\pi$.",
+        r"The following matrix gives the axis at every angle, without loss of digits near $\pi$.",
         symmetric,
         4 * sin(ALPHA / 2) ** 2 * N * N.T,
         because=r"$1 - \cos\alpha = 2 \sin^2 (\alpha/2)$",

@@ -117,7 +117,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
     motion = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
     nutation = rate(lagrangian.diff(DTHETA), motion) - lagrangian.diff(THETA)
     d.step(
-        "Lagrange's equation for the nutation is the equation of motion of one coordinate in this potential.",
+        "Lagrange's equation for the nutation is the equation of motion of one coordinate in the effective potential.",
         nutation.subs(rates),
         A * symbols.ddtheta + potential.diff(THETA),
         because="the rates are substituted after differentiating",

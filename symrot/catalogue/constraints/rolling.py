@@ -41,7 +41,7 @@ def _ball(d: Derivation) -> None:
         "point of contact, and has the velocity",
             ("v", r"R\;\omega \times n"))  # fmt: skip
     d.step(
-        "With this velocity, the point of contact is at rest.",
+        "With this velocity of the centre, the point of contact is at rest.",
         velocity + OMEGA_S.cross(contact),
         0,
         because=r"the vector from the centre to the point of contact is $-R\,n$",

@@ -89,7 +89,8 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         display=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
     )
     d.step(
-        "A body that was at rest gains half the product of the impulse and the velocity of the struck point (Kelvin).",
+        "The kinetic energy that a body at rest gains is half the product of the impulse and the velocity of the "
+        "struck point (Kelvin).",
         energy(dv, domega),
         HALF * J.dot(MOBILITY * J),
         because="the velocity before the blow is zero",

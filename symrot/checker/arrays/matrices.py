@@ -34,17 +34,23 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
     """Return the names that are defined as 3 x 3 matrices whose entries are independent symbols."""
-    return [name for name, tree in definitions if tree == matrix_of_entries(name)]
+    return [
+        name for name, tree in definitions if any(tree == matrix_of_entries(name, timed) for timed in (False, True))
+    ]
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
     """Return definitions that make the matrices ``names`` rotations: products of three rotations by any angles."""
-    return [(name, _rotation(name) if name in names else tree) for name, tree in definitions]
+    return [
+        (name, _rotation(name, tree == matrix_of_entries(name, timed=True)) if name in names else tree)
+        for name, tree in definitions
+    ]
 
 
-def _rotation(name: str) -> Node:
+def _rotation(name: str, timed: bool) -> Node:
     """Return the tree of the product of three rotations about z, x and z."""
-    turns = [Node("call", f"R{axis}", (Node("name", f"{name}_angle{n}"),)) for n, axis in enumerate("zxz", 1)]
+    kind, args = ("call", (TIME,)) if timed else ("name", ())
+    turns = [Node("call", f"R{axis}", (Node(kind, f"{name}_angle{n}", args),)) for n, axis in enumerate("zxz", 1)]
     return Node("product", None, tuple(turns))
 
 
@@ -106,6 +112,14 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
                 kinds = {factor.value for factor in pair if factor.kind == "call"}
                 if name in [_bare(factor).value for factor in pair] and "skew" in kinds:
                     matrices[name] = is_rate
+    for node in (node for side in relation[1:] for _, node in walk(side) if node.kind == "product"):
+        for pair in pairwise(node.args):  # R' R^T and R^T R'
+            rates = [
+                part.args[0] for part in pair if part.kind == "call" and part.value == "diff" and len(part.args) == 2
+            ]
+            transposes = [part.args[0] for part in pair if part.kind == "transpose"]
+            if rates and rates == transposes and (name := str(_bare(rates[0]).value))[:1].isupper():
+                matrices[name] = True
     return matrices
 
 

@@ -153,10 +153,12 @@ def _quaternion_names(
             names[str(bare.value)] = None
 
     everything = [node for side in sides for _, node in walk(side)]
+    in_text = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
         if node.kind == "call" and node.value == PRODUCT:
             for factor in node.args:
-                add(factor)
+                if not (_is_angular(factor) and f"{factor.value}_0" not in in_text):
+                    add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
     for factor in _turned(sides):
@@ -268,9 +270,14 @@ class _Products:
         node = replace(node, args=args)
         if node.kind == "call" and node.value == PRODUCT:
             self.pure |= {str(part.value): None for factor in args for part in _vector_of_pair(factor)}
+            self.pure |= {str(factor.value): None for factor in args if self.is_rate(factor)}
         if node.kind == "call" and node.value == "abs" and self.is_quaternion(args[0]):
             return Node("call", "sqrt", (Node("call", "dot", (args[0], args[0])),), node.span)
         return self.multiplied(node) if node.kind == "product" else node
+
+    def is_rate(self, factor: Node) -> bool:
+        """Return whether a factor is an angular velocity, which is no quaternion of the text and no vector yet."""
+        return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:
         """Return a product in which quaternions, and the vectors between them, are multiplied as Hamilton products."""

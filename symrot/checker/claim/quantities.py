@@ -33,6 +33,9 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
         str(node.value) for node in nodes if node.kind == "name" or (node.kind == "call" and node.value not in BUILT_IN)
     }
     others = names - set(OTHER_MEANINGS)
+    sides = [tree for tree in trees if tree.kind == "name" and tree.value in OTHER_MEANINGS]
+    if not others and sides and {*sides} == {sides[0]} and nodes.count(sides[0]) == len(sides):
+        return (str(sides[0].value),)  # I = 0.5*2*0.1^2
     if not any(
         name in USUAL_QUANTITIES or (len(name) > 1 and name not in ("pi", "theta", "phi", "psi")) for name in others
     ):

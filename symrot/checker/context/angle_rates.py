@@ -11,15 +11,15 @@ from itertools import product
 from sympy import Expr, Matrix, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
-from symrot.checker.context.admission import plain
+from symrot.checker.context.admission import is_usual_for_body, plain
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
 from symrot.checker.context.substitution import Substitution
 from symrot.conventions import SEQUENCES
 from symrot.exact.printing import as_text
-from symrot.kinematics.euler import rate_jacobian
+from symrot.kinematics.euler import dcm, rate_jacobian
 
-__all__ = ["substitutions_of_rates"]
+__all__ = ["substitutions_of_entries", "substitutions_of_rates"]
 
 FRAMES = ("body", "space")
 COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
@@ -45,7 +45,8 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
-    for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
+    sequences = [context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest]
+    for sequence, frame in product([name for name in sequences if is_usual_for_body(context, name)], frames):
         for order in orders(context, letters, sequence):
             if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):
                 continue
@@ -87,3 +88,30 @@ def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
     unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)
     letters = [names.get(place) or next(unused) for place in range(3)]
     return [Symbol(name, real=True) for name in letters], [Symbol(f"d{name}", real=True) for name in letters]
+
+
+ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
+"""An entry of a rotation matrix; its groups are row and column."""
+
+
+def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
+    """Yield the ways to read a claim as one about an entry of the rotation matrix of the stated sequence.
+
+    The matrix takes body components to space components in the first way, and is transposed in the second.
+    """
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
+    entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
+    angles = {atom: name for atom, name in names.items() if atom not in entries}
+    letters = list(dict.fromkeys(angles.values()))
+    if not context.sequence or len(entries) != 1 or not letters or not all(map(letter_of_angle, letters)):
+        return
+    ((atom, match),) = entries.items()
+    row, column = (int(digit) - 1 for digit in match.groups())
+    for order in orders(context, letters, context.sequence):
+        q, _ = _coordinates(order.places)
+        matrix = dcm(context.sequence, q)
+        for words, value in (("body to space", matrix[row, column]), ("space to body", matrix[column, row])):
+            name = f"entry {row + 1}{column + 1} of the rotation matrix of {context.sequence}, {words}"
+            guess = ", ".join(filter(None, [words, order.guess]))
+            values = {angle: q[order.places[letter]] for angle, letter in angles.items()}
+            yield Substitution(name, f'symrot.dcm("{context.sequence}")', {**values, atom: value}, guess)

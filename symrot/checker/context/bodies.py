@@ -62,6 +62,8 @@ class Body:
         Symbol -> its ratio to the letter, if it is not 1: ``{"R": 1/2}`` for "of diameter d", since R = d/2.
     axes : str
         The axes that the words allow, such as ``"z"`` for "perpendicular to its plane"; empty for all.
+    symmetry_axis : str
+        The axis of symmetry that the words state, "x" for "cone with axis x"; empty for z, as in derived formulas.
     """
 
     kind: Kind
@@ -71,6 +73,7 @@ class Body:
     rest: str = ""
     factors: Mapping[str, Fraction] = field(default_factory=dict)
     axes: str = ""
+    symmetry_axis: str = ""
 
     @property
     def formulas(self) -> tuple[str, ...]:
@@ -204,7 +207,16 @@ _ACROSS = re.compile(
 )
 _HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
 _FLAT = ("disk", "ring", "annulus", "plate", "triangular plate", "flat body")
+_WITHOUT_AXIS = ("box", "plate", "ellipsoid", "triangular_plate", "triangular_prism", "tetrahedron")
+"""Shapes whose formulas have no axis of symmetry."""
+
 ROD = "thin rod"
+_ALONG = re.compile(
+    r",?(?<!about)(?<!about its)(?<!about the)\s(?:with |and |whose )?(?:its |the |an )?"
+    r"(?:(?:symmetry )?axis(?: of symmetry)?(?: is)?(?: along| in)?|along)(?: the)? ([xyz])"
+    r"(?:[- ](?:axis|direction))?(?!\w)(?!,? (?:and )?(?:along )?[xyz]\b)"
+)
+"""Words for the axis of symmetry of a body, "with axis x"."""
 
 
 def bodies_of_formula(name: str) -> set[str]:
@@ -239,6 +251,8 @@ def body_of_words(words: str) -> Body | None:
         if re.search(pattern, rest):
             motion, rest = name, re.sub(pattern, " ", rest, count=1)
             break
+    along = _ALONG.search(rest) if kind.shape and kind.shape not in _WITHOUT_AXIS else None
+    rest = _ALONG.sub(" ", rest, count=1) if along else rest
     letters, factors, rest = _letters(kind, _HEIGHT_OF_FALL.sub(" ", words), rest)
     axes = ""
     if kind.title in (*_FLAT, ROD) and _ACROSS.search(rest):
@@ -247,7 +261,8 @@ def body_of_words(words: str) -> Body | None:
     place, rest = place_of_words(" ".join(rest.split()), own)
     if axes and re.fullmatch(r"(.* )?about", " ".join(rest.split())):
         rest = rest.strip().removesuffix("about")
-    return Body(kind, motion, letters, place, unused_words(_HARMLESS.sub(" ", rest)), factors, axes)
+    symmetry_axis = along[1].replace("z", "") if along else ""
+    return Body(kind, motion, letters, place, unused_words(_HARMLESS.sub(" ", rest)), factors, axes, symmetry_axis)
 
 
 def _scaled(term: str) -> tuple[str, Fraction]:

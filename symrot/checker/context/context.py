@@ -216,6 +216,7 @@ def _described_body(body: Body) -> str:
     letters = ", ".join(f"{_scaled(body, symbol)} for {symbol}" for symbol in body.letters)
     motion = f" {'in general motion' if body.motion == 'general' else f'that {body.motion}'}" if body.motion else ""
     place = f" {body.place}" if body.place else ""
+    place += f" with axis {body.symmetry_axis}" if body.symmetry_axis else ""
     return f"{body.kind.title}{motion}{place}" + (f" (with {letters})" if letters else "")
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.context.angle_rates import substitutions_of_rates
+from symrot.checker.context.angle_rates import substitutions_of_entries, substitutions_of_rates
 from symrot.checker.context.axis_angles import is_stated, substitutions_of_axis_angles
 from symrot.checker.context.body_integrals import (
     TENSOR_OF_INTEGRALS,
@@ -45,6 +45,7 @@ def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
     verdict = by_substitution(
         claim, verdict, substitutions_of_rates(context, sides), bool(context.sequence) and has_frame
     )
+    verdict = by_substitution(claim, verdict, substitutions_of_entries(context, sides), is_complete=False)
     if context.sequence not in ("", "ZXZ") or verdict.verdict in ("true", "recognised"):
         return verdict
     return by_substitution(claim, verdict, substitutions_of_tops(context, sides), is_complete=False)

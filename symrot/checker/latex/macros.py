@@ -24,7 +24,7 @@ _SHORT: Sequence[tuple[str, Mapping[int, str]]] = (
     (r"\cross \cp \crossproduct \wedge", {0: r"\times"}), (r"\Tr \tr \trace", {0: r"\operatorname{tr}"}),
     (r"\Rightarrow \implies \iff \Leftrightarrow \Longrightarrow \Longleftrightarrow \land \therefore", {0: ","}),
     (r"\coloneqq \triangleq \doteq \coloneq", {0: "="}), (r"\dagger", {0: r"\top"}), (r"\colon", {0: ":"}),
-    (r"\iint", {0: r"\int\int"}), (r"\iiint", {0: r"\int\int\int"}),
+    (r"\imath", {0: "i"}), (r"\jmath", {0: "j"}), (r"\iint", {0: r"\int\int"}), (r"\iiint", {0: r"\int\int\int"}),
 )  # fmt: skip
 
 MACROS: Mapping[str, Mapping[int, str]] = {command: forms for names, forms in _SHORT for command in names.split()}

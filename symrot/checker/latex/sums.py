@@ -15,6 +15,7 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
+from symrot.checker.typed.cursor import is_usual_vector
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
@@ -51,6 +52,12 @@ ENDS = frozenset([
     *QUATERNION_SIGNS, *SIGNS,
 ])  # fmt: skip
 """Items that cannot start a factor."""
+
+
+TRIPLE_PRODUCT = re.compile(
+    r"\\times\s*(?:\\left)?\([^()+-]*\\times|\([^()]*\\times[^()]*\)\s*\\times|\)\s*\\times\s*(?:\\left)?\("
+)
+r"""A product ``a\times(b\times c)``, ``(a\times b)\times c`` or ``(a + b)\times(a - b)``."""
 
 
 class SumsPart(Cursor):
@@ -92,6 +99,9 @@ class SumsPart(Cursor):
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
             if operator.text == "\\times" and any(kinds) and not all(kinds):
                 self.note_vector(right if kinds[0] else left)
+            elif not any(kinds) and self.has_bare_vectors(left, right, operator.text):
+                for side in (left, right):
+                    self.note_vector(last_factor(side))
             if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
                 left = product([left, right])
             elif not all(kinds):
@@ -104,13 +114,38 @@ class SumsPart(Cursor):
                 left, crossed = Node("call", "cross", (left, right)), True
         return negated(left) if negative else left
 
+    def has_bare_vectors(self, left: Node, right: Node, sign: str) -> bool:
+        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors, as in ``\omega\times r``.
+
+        They are if books use both letters for vectors, and if the text shows it: by both signs, by a triple product, by
+        ``a\times b`` beside ``b\times a``, by an angular velocity or acceleration, by r as the first letter, by
+        ``a\times a = 0``, or by the lengths of both beside the cosine or sine of an angle. ``W = F\times d`` may be a
+        product of numbers.
+        """
+        names = [name_of(last_factor(side)) for side in (left, right)]
+        if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
+            return False
+        function = {"\\times": "\\sin", "\\cdot": "\\cos"}[sign]
+        lengths = [rf"\|\s*\\?{re.escape(name)}\s*\\?(r?Vert)?\|" for name in names]
+        if function in self.source and all(re.search(length, self.source) for length in lengths):
+            return True
+        letters = [re.split("[_0-9]", name)[0] for name in names]
+        is_zero = names[0] == names[1] and re.search(r"=\s*0\b|\b0\s*=", self.source) is not None
+        is_turned = names[0] != names[1] and all(
+            re.search(rf"{re.escape(first)}\s*\\times\s*\\?{re.escape(second)}(?![A-Za-z])", self.source)
+            for first, second in (names, names[::-1])
+        )
+        is_certain = letters[0] == "r" or bool({"omega", "Omega", "alpha"} & {*letters}) or is_turned
+        is_certain = is_certain or "\\cdot" in self.source or TRIPLE_PRODUCT.search(self.source) is not None
+        return sign == "\\times" and (is_certain or is_zero)
+
     def is_cross_matrix(self) -> bool:
         r"""Return whether a cross is directly before a closing bracket, as in the skew matrix ``[a \times]``."""
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
         """Record that a name without a mark, or the name in a rate, is a vector; the text is then parsed again."""
-        name = node.args[0].value if node.kind == "call" and node.value == "diff" else node.value
+        name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
             self.crossed.add(str(name))
@@ -149,7 +184,7 @@ class SumsPart(Cursor):
                 divided = None if sure else token
             elif not self.starts_factor():
                 return product(factors)
-            elif token.kind == "number":
+            elif token.kind == "number" and self.peek(1).text != "^":  # 10^{a} 10^{b} is a product
                 raise self.fail("brackets or a product sign before a number")
             else:
                 factors.append(self.factor())
@@ -194,13 +229,15 @@ class SumsPart(Cursor):
             return derivative
         item = self.next()
         node = self.base(item)
+        bracketed = item.text in CLOSING or item.text == "\\left"
         while raised := self.script("^"):
-            if node.kind == "power":
+            if node.kind == "power" and not bracketed:
                 raise self.fail("brackets around a repeated power", raised)
             is_function = node.kind == "call" and node.value in FUNCTIONS.values()
             if is_function and item.start not in self.short and self.flips is None:
                 raise self.fail(f"the power directly after the function, {item.text}^n(..)", raised)
             node = self.raised(node, raised.inside)
+            bracketed = False
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
@@ -357,3 +394,15 @@ class SumsPart(Cursor):
 
 def _listed(members: list[Node]) -> Node:
     return Node("list", ("[", "]"), tuple(members))
+
+
+def last_factor(node: Node) -> Node:
+    r"""Return the last factor of a product, which is the vector in ``I\omega``; return any other tree unchanged."""
+    return node.args[-1] if node.kind == "product" else node
+
+
+def name_of(node: Node) -> str:
+    """Return the name that a tree is, or whose rate it is; an empty text for any other tree."""
+    if node.kind == "call" and node.value == "diff":
+        node = node.args[0]
+    return str(node.value) if node.kind in ("name", "call") else ""

@@ -149,6 +149,7 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
     """Return a text in which dots and hats come after their letters; text copied from a PDF has them before."""
+    text, places = _without_blanks_before_dots(text, places)
     characters, places = list(text), [*places]
     for at in range(len(characters) - 1):
         alone = characters[at] in _OVER and not (at and (characters[at - 1].isalpha() or characters[at - 1] in _OVER))
@@ -156,6 +157,16 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
             characters[at], characters[at + 1] = characters[at + 1], characters[at]
             places[at], places[at + 1] = places[at + 1], places[at]
     return "".join(characters), places
+
+
+def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
+    """Return a text without the blank in ``ω ˙ =``, as some PDFs have it; no letter follows the dot."""
+    dots = "".join(_DOTS)
+    gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]
+    return (
+        "".join(character for place, character in enumerate(text) if place not in gaps),
+        [where for place, where in enumerate(places) if place not in gaps],
+    )
 
 
 def _alike(character: str) -> str:

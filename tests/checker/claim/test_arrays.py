@@ -109,3 +109,11 @@ def test_a_condition_on_a_matrix_says_that_nothing_defines_it():
     verdict = symrot.check("A A^T = A^T A")
     assert verdict.verdict == "definition"
     assert verdict.reason == "it says something about A, and nothing here says what that is"
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    (r"\dot R R^T = [\omega]_\times", "definition"), (r"\dot R R^T + R\dot R^T = 0", "conditional"),
+    (r"\dot q = \frac12 q\otimes\omega", "recognised"),
+])  # fmt: skip
+def test_rates_beside_transposes_and_quaternion_signs(claim, verdict):
+    assert symrot.check(claim, repair=False).verdict == verdict

@@ -1,0 +1,60 @@
+"""Claims about a body whose stated axis of symmetry is x or y, judged with z in its place, as in derived formulas.
+
+For a cone with axis x, I_x is the moment that derived formulas call I_z.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.tree import Node, text
+from symrot.checker.verdict import Repair, Verdict
+from symrot.errors import InputError
+
+__all__ = ["in_claim", "with_axis_z"]
+
+TURNED: Mapping[str, Mapping[str, str]] = {"x": {"x": "z", "y": "x", "z": "y"}, "y": {"x": "y", "y": "z", "z": "x"}}
+"""Stated axis of symmetry -> for each axis, the axis with its place if the axis of symmetry is z."""
+
+MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
+"""A moment of inertia, or a radius of gyration, about an axis; its second group is the axis."""
+
+
+def with_axis_z(claim: Claim) -> Claim:
+    """Return the claim that says the same about the body with z as its axis of symmetry."""
+    body = claim.context.body
+    if body is None or claim.relation is None:
+        return claim
+    context = replace(claim.context, body=replace(body, symmetry_axis=""))
+    relation = _renamed(claim.relation, TURNED[body.symmetry_axis])
+    return replace(claim.with_relation(relation, alternatives=()), context=context)
+
+
+def in_claim(verdict: Verdict, axis: str) -> Verdict:
+    """Turn a verdict on the claim with z as the axis of symmetry into one on the claim itself; a note says so."""
+    back = {new: old for old, new in TURNED[axis].items()}
+    repairs = tuple(changed for repair in verdict.repairs if (changed := _restored(repair, back)) is not None)
+    note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
+    return replace(verdict, repairs=repairs, notes=(*verdict.notes, note))
+
+
+def _restored(repair: Repair, back: Mapping[str, str]) -> Repair | None:
+    try:
+        sign, left, right = _renamed(read_relation(repair.text), back)
+    except InputError:
+        return None
+    return replace(repair, text=f"{text(left)} {sign} {text(right)}")
+
+
+def _renamed(relation: tuple[str, Node, Node], axes: Mapping[str, str]) -> tuple[str, Node, Node]:
+    """Return an equation in which the moments of inertia have other axes."""
+
+    def renamed(tree: Node) -> Node:
+        if tree.kind == "name" and (match := MOMENT.fullmatch(str(tree.value))):
+            return replace(tree, value=match[1] + axes[match[2]] * (1 + bool(match[3])))
+        return replace(tree, args=tuple(map(renamed, tree.args)))
+
+    sign, left, right = relation
+    return sign, renamed(left), renamed(right)
