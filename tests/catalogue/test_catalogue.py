@@ -280,6 +280,12 @@ def test_bold_words_are_bold_in_latex():
     assert r"\textbf{Is $x^2$ positive?} The code \texttt{x**2} and \texttt{y**2}, \emph{yes}." in latex_document(page)
 
 
+def test_a_command_can_be_copied_from_latex():
+    page = Page("page", "Page", about="Try `symrot check 'x == 1' --given 'x > 0'`, with x in kg m^2.")
+    text = latex_document(page)
+    assert r"check \textquotesingle{}x == 1\textquotesingle{} -{}-given" in text and r"m\textsuperscript{2}" in text
+
+
 def test_links_lead_to_pages(printed):
     for name, text in printed.items():
         for target in re.findall(r"\]\(([^)#]+)\)", text):

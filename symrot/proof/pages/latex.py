@@ -20,6 +20,7 @@ PACKAGES = r"""\usepackage[T1]{fontenc}
 \usepackage[margin=20mm]{geometry}
 \setcounter{MaxMatrixCols}{12}
 \setlength{\parindent}{0pt}
+\setlength{\parskip}{4pt plus 2pt}
 \setlength{\emergencystretch}{3em}
 \newsavebox{\displayed}
 % a display that is wider than the page is scaled to it
@@ -145,7 +146,17 @@ def _display(latex: str) -> str:
     return f"\\fitted{{\\begin{{aligned}}\n{body}\n\\end{{aligned}}}}"
 
 
-ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"\~{}"}
+ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "&": r"\&",
+    "%": r"\%",
+    "#": r"\#",
+    "_": r"\_",
+    "^": r"\^{}",
+    "~": r"\~{}",
+}
 
 
 def _prose(text: str) -> str:
@@ -164,5 +175,7 @@ def _piece(piece: str) -> str:
     code = piece.startswith("`")
     escaped = "".join(ESCAPES.get(letter, letter) for letter in piece.strip("`" if code else ""))
     if code:
-        return rf"\texttt{{{escaped}}}"
-    return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", escaped)
+        straight = escaped.replace("'", r"\textquotesingle{}").replace("--", "-{}-")  # as a shell needs them
+        return rf"\texttt{{{straight}}}"
+    raised = re.sub(r"\\\^\{\}(\d+)", r"\\textsuperscript{\1}", escaped)
+    return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", raised)
