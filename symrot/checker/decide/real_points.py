@@ -284,7 +284,10 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count the cost of factoring a polynomial, zero over the rationals; raise _DeadEnd beyond the budget."""
+        """Add the cost of factoring a polynomial of a degree to the cost so far; raise _DeadEnd if it exceeds the budget.
+
+        Only a polynomial with irrational coefficients costs anything.
+        """
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
