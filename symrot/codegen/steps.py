@@ -5,19 +5,16 @@ branch of its own, so its time is bounded. Each method is written once, for any 
 with numbers that record their operations, and the record is the program.
 """
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from symrot.codegen.lowering.lower import ANONYMOUS
-from symrot.codegen.lowering.tape import Operation
-from symrot.codegen.lowering.temporary_names import with_names
+from symrot.codegen.recording import Recorder
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import FUNCTIONS, Node
+from symrot.formula.tree import FUNCTIONS
 
 __all__ = ["RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "step_program", "step_signature", "stepped"]
 
@@ -165,108 +162,9 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
         If the method is a Taylor series and the rates contain an operation without one.
     """
     signature = step_signature(rates, name)
-    recorder = _Recorder()
+    recorder = Recorder()
     inputs = {each: recorder.symbol(each) for a in signature.arguments if a.role == "in" for each, *_ in a.components}
     functions = {each: recorder.function(each) for each in FUNCTIONS}
     outputs = stepped(rates, method, inputs, inputs[SIZE], functions, recorder.constant)
     results = (each for each, *_ in signature.argument(NEXT).components)
     return recorder.program(signature, dict(zip(results, outputs, strict=True)))
-
-
-class _Recorder:
-    """A record of operations, in which equal operations occur once and operations with constants are folded."""
-
-    def __init__(self) -> None:
-        self.known: dict[Operation, int] = {}
-
-    def add(self, kind: str, *operands: int, value: Any = None) -> "_Recorded":
-        return _Recorded(self, self.known.setdefault(Operation(kind, operands, value), len(self.known)))
-
-    def symbol(self, name: str) -> "_Recorded":
-        return self.add("symbol", value=name)
-
-    def constant(self, value: Fraction) -> Fraction:
-        return value
-
-    def index(self, value: Any) -> int:
-        return value.index if isinstance(value, _Recorded) else self.add("number", value=Fraction(value)).index
-
-    def function(self, name: str) -> Callable[..., "_Recorded"]:
-        return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
-
-    def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
-        """Return the program of the recorded operations that the outputs need; a result used once is not named."""
-        roots = {name: self.index(value) for name, value in outputs.items()}
-        operations = list(self.known)
-        uses = Counter(roots.values())
-        needed = set(roots.values())
-        for index in range(len(operations) - 1, -1, -1):
-            if index in needed:
-                uses.update(operations[index].operands)
-                needed.update(operations[index].operands)
-        nodes: dict[int, Node] = {}
-        temporaries: list[tuple[str, Node]] = []
-        for index in sorted(needed):
-            kind, operands, value = operations[index]
-            if kind in ("number", "symbol"):
-                nodes[index] = (kind, value)
-                continue
-            parts = tuple(nodes[i] for i in operands)
-            node: Node = ("call", kind.removeprefix("call "), parts) if kind.startswith("call ") else (kind, *parts)
-            if uses[index] > 1 or node[0] == "call":
-                temporaries.append((f"{ANONYMOUS}{index}", node))
-                node = ("symbol", f"{ANONYMOUS}{index}")
-            nodes[index] = node
-        program = Program(signature, tuple(temporaries), tuple((name, nodes[i]) for name, i in roots.items()))
-        return with_names(program, [name for name, _ in temporaries], {})
-
-
-class _Recorded:
-    """A number that records the operations in which it occurs."""
-
-    def __init__(self, recorder: _Recorder, index: int) -> None:
-        self.recorder, self.index = recorder, index
-
-    def _operation(self, kind: str, left: Any, right: Any) -> "_Recorded":
-        return self.recorder.add(kind, self.recorder.index(left), self.recorder.index(right))
-
-    def __add__(self, other: Any) -> "_Recorded":
-        return self if _is(other, 0) else self._operation("+", self, other)
-
-    def __radd__(self, other: Any) -> "_Recorded":
-        return self if _is(other, 0) else self._operation("+", other, self)
-
-    def __sub__(self, other: Any) -> "_Recorded":
-        return self if _is(other, 0) else self._operation("-", self, other)
-
-    def __rsub__(self, other: Any) -> "_Recorded":
-        return -self if _is(other, 0) else self._operation("-", other, self)
-
-    def __mul__(self, other: Any) -> Any:
-        if isinstance(other, _Recorded):
-            return self._operation("*", self, other)
-        return 0 if other == 0 else self if other == 1 else -self if other == -1 else self._operation("*", other, self)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> Any:
-        return self._operation("/", self, other) if isinstance(other, _Recorded) else self * (1 / Fraction(other))
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return 0 if _is(other, 0) else self._operation("/", other, self)
-
-    def __neg__(self) -> "_Recorded":
-        return self.recorder.add("neg", self.index)
-
-    def __pow__(self, exponent: int) -> Any:
-        if exponent < 0:
-            return 1 / self**-exponent
-        result: Any = self
-        for bit in format(exponent, "b")[1:]:
-            result = result * result
-            result = result * self if bit == "1" else result
-        return result
-
-
-def _is(value: Any, number: int) -> bool:
-    return not isinstance(value, _Recorded) and bool(value == number)
