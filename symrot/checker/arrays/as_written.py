@@ -14,7 +14,7 @@ QUATERNION, UNIT = ("qmul", "conjugate"), Node("call", "eye", (number(4),))
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas call a function for quaternions, or have ``eye(4)``, which is 1 beside Pauli's matrices."""
+    """Return whether formulas call a function for quaternions, or have ``eye(4)``, the 1 beside Pauli's matrices."""
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 

@@ -132,7 +132,10 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 
 
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a side as a matrix: a scalar s becomes s times the unit matrix. In a written-out matrix, each entry does."""
+    """Return a side as a matrix: a scalar s becomes s times the unit matrix.
+
+    In a matrix that is written out, each scalar entry does.
+    """
     if side.kind == "call" and side.value == "Matrix":
         (rows,) = side.args
         return replace(

@@ -281,7 +281,7 @@ class _Products:
         return self.multiplied(node) if node.kind == "product" else node
 
     def is_rate(self, factor: Node) -> bool:
-        """Return whether a factor is an angular velocity by its name, and listed neither as a quaternion nor as a vector."""
+        """Return whether a factor is an angular velocity by its name, and so far neither a quaternion nor a vector."""
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:

@@ -284,9 +284,9 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Add the cost of factoring a polynomial of a degree to the cost so far; raise _DeadEnd if it exceeds the budget.
+        """Record the cost of factoring a polynomial of a degree; raise _DeadEnd if all costs exceed the budget.
 
-        Only a polynomial with irrational coefficients costs anything.
+        Only a polynomial over an algebraic field, with irrational numbers, costs anything.
         """
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
