@@ -22,7 +22,7 @@ from symrot.certificates.step_certificate import (
     rates_of,
 )
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
-from symrot.codegen.steps import Method
+from symrot.codegen.steps import Method, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
@@ -129,7 +129,8 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
 def _method(path: Path, data: Data) -> Method:
     step = data["step"]
     try:
-        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None)
+        jacobian = tuple(step.get("jacobian", ()))
+        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None, jacobian)
     except (InputError, KeyError, TypeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
     if step["order"] != method.order or data["method"] != method.formula:
@@ -139,12 +140,14 @@ def _method(path: Path, data: Data) -> Method:
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
     """Compare a certificate with what symrot derives for the shipped scene that it names; return the result."""
-    match = re.fullmatch(r"symrot emit (\S+) --step \w+(?: --order \d+)? --target c", str(data["regenerate"]))
+    options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
+    match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
         return "the rates are only those that the certificate states, because symrot has no scene of that name"
     order = method.order if method.name == "taylor" and method.order != ORDER else None
-    own = json.loads(step_text(scene, method.name, order).certificate())
+    jacobian = method.by if isinstance(method, WithDerivatives) else ()
+    own = json.loads(step_text(scene, method.name, order, jacobian).certificate())
     for section in SECTIONS:
         if section not in ("bounds", "trusted", "seal") and own[section] != data[section]:
             raise CertificateError(
