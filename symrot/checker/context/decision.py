@@ -101,8 +101,8 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
-    of the formula, such as "transposed".
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says in which form
+    the formula is meant, such as "transposed"; it is empty for the formula as it is.
     """
 
     known: Known
@@ -189,7 +189,10 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if "a tangent" of a disk or ring is taken to be normal to its plane."""
+    """Replace "true" by "recognised" if the words "about a tangent" were read as an unusual axis.
+
+    This is the axis through the rim of a disk or ring that is normal to its plane; a tangent may also lie in the plane.
+    """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
@@ -534,9 +537,9 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the symbols of angle rates that an assignment does not use, each with the derivative that it means.
+    """Return the angle rates that an assignment of letters does not use: ``dphi`` with ``diff(phi(t), t)`` for it.
 
-    The result is empty if the claim writes no derivatives.
+    The result is empty if the claim itself has no derivatives.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}

@@ -162,7 +162,10 @@ def misfit_of(name: str, known: str) -> float:
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether a known formula's name has one of several words; an angular velocity is not a velocity here."""
+    """Return whether a known formula's name has one of several words; "velocity" in "angular velocity" does not count.
+
+    If ``words`` is None, any name will do.
+    """
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
