@@ -202,10 +202,9 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if a letter with an index, such as I_1, was assigned to another axis.
+    """Replace "true" by "recognised" if I_1, for example, was taken for a moment about another axis than the first.
 
-    Words about a letter, or about the moments of the body, may say for which axis it stands; then nothing is
-    replaced.
+    The verdict stays "true" if words about the letter, or about the moments of the body, say for which axis it stands.
     """
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
@@ -380,7 +379,7 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula without a term or factor of the formula that the context states."""
+    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states."""
     context = claim.context
     own_meaning = context.meaning_of(quantity)
     if context.body is None and (own_meaning is None or own_meaning.body is None):

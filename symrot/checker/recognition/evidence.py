@@ -227,7 +227,10 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether the fault is the angle or function in a quaternion's component, as in beta_1 = e_1 sin(phi)."""
+    """Return whether a component of a quaternion has a wrong angle or function, as in beta_1 = e_1 sin(phi).
+
+    The right formula is e_1 sin(phi/2).
+    """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (
