@@ -61,9 +61,9 @@ def step_method(name: str, order: int | None = None) -> Method:
     if name not in STEPS:
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
+        raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
     return STEPS[name](ORDER if order is None else order)
 
 
@@ -72,7 +72,10 @@ def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian:
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
     if jacobian:
-        raise InputError(f"jacobian: expected no derivatives of a step, got {', '.join(jacobian)} with the step {step}")
+        raise InputError(
+            "jacobian: expected no derivatives together with a step, got derivatives by "
+            f"{', '.join(jacobian)} and the step '{step}'"
+        )
     method = step_method(step, order)
     return StepText(load_scene(scene), method)
 

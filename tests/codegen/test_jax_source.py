@@ -138,7 +138,7 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
     ("heavy_top", "q2*q3", "q2**q3", "as symrot emits it"),
     ("rotation_vector_dcm", "-x*_tangent_gap(x)*dx", "x*_tangent_gap(x)*dx", "functions alone"),
     ("rotation_vector_dcm", "x == 0.0, 1.0,", "x == 0.0, 2.0,", "got others"),
-    ("rotation_vector_dcm", "@jax.custom_jvp\n", "", "the rule of the derivative"),
+    ("rotation_vector_dcm", "@jax.custom_jvp\n", "", "a rule for the derivative"),
     ("rotation_vector_dcm", "jnp.where(x == 0.0, 1.0, jnp.sin(x)/x)", "jnp.sin(x)/x", "jnp.where"),
 ])  # fmt: skip
 def test_wrong_jax_is_refused(name, old, new, message):

@@ -54,7 +54,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
     )
     adjugate = jacobian.adjugate(method="berkowitz")
     d.step(
-        "The product of the determinant and the inverse has no denominator, so it is finite at every angle.",
+        "The product of the determinant of $B$ and its inverse has no denominator, so it is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
         adjugate,
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",
@@ -64,7 +64,9 @@ def _sequence(d: Derivation, sequence: str) -> None:
     for point in dossier.locked:
         _locked(d, sequence, adjugate, point)
     if dossier.regular_sequences:
-        d.passage(f"Sequences without gimbal lock at any of these attitudes: {', '.join(dossier.regular_sequences)}.")
+        d.passage(
+            f"Sequences without gimbal lock at any of the attitudes above: {', '.join(dossier.regular_sequences)}."
+        )
 
 
 def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) -> None:
@@ -82,7 +84,10 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
     d.define(
-        "At this angle all three axes of rotation are perpendicular to one direction, in body components:", "n", lost
+        "At this angle of gimbal lock, all three axes of rotation are perpendicular to one direction, in body "
+        "components:",
+        "n",
+        lost,
     )
     d.step(
         "No angle rates rotate the body about $n$, which has length 1.",
@@ -93,8 +98,8 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
     )
     strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
     d.step(
-        rf"As $\theta$ approaches this angle, ${where}$, the rates grow: $\det B\,\dot q \to {_sign(strength)}s\,(n "
-        r"\cdot \omega)$. Here $s$ are the angle rates that do not rotate the body.",
+        rf"As $\theta$ approaches gimbal lock at ${where}$, the angle rates grow: $\det B\,\dot q \to "
+        rf"{_sign(strength)}s\,(n \cdot \omega)$. Here $s$ are the angle rates that do not rotate the body.",
         adjugate.subs(at),
         strength * silent * lost.T,
         because="the matrix of cofactors has rank one at gimbal lock",
