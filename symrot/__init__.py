@@ -67,6 +67,7 @@ _NAMES_OF_MODULES = {
     "report.output": ("save",),
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
+    "results.sensitivity": ("Sensitivities", "Sensitivity"),
     "sweeps.sweep": ("Sweep", "sweep"),
     "viewer.show": ("show",),
     "notebook.show": ("in_notebook",),

@@ -7,8 +7,12 @@ the first n derivatives of ``x(h) - S(h)`` vanish at h = 0, so that by Taylor's 
 
 where a is a Taylor coefficient of the motion at a state between start and end, and b one of S at a size between 0 and
 h. Intervals contain both: first a box is found that the motion provably does not leave during the step (its rates on
-the box keep it inside); then the coefficients are computed on that box. The box of the start is divided where this
-makes the bound smaller.
+the box keep it inside); then the coefficients are computed on that box. Without exact polynomials, see below, the box
+of the start is divided where this makes the bound smaller.
+
+If the rates are polynomials, as those of most scenes are, the difference is expanded further: its coefficients of the
+orders n + 1 to m - 1 are exact polynomials in the start, in which equal terms of motion and method cancel; only the
+remainder of order m is bounded by intervals.
 
 A Taylor step has order n by construction, and b = 0. For a Runge-Kutta method, the order conditions of all rooted trees
 with up to n nodes are checked exactly.
@@ -29,6 +33,7 @@ from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
+from symrot.formula.tree import Node
 
 __all__ = ["PIECES", "require_order", "truncation_bounds"]
 
@@ -36,6 +41,8 @@ PIECES = 24
 """Number of parts into which the box of the start is divided at most."""
 
 BITS = 64  # of the ends of intervals
+EXACT_ORDERS = 2  # coefficients of the error that are exact polynomials, if the rates are polynomials
+HIGHEST = 10  # order of such a coefficient; polynomials of higher orders have too many terms
 GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
 ATTEMPTS = 24
 
@@ -298,10 +305,11 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     """
     require_order(method)
     states = [name for name, *_ in rates.signature.argument("y").components]
-    problem = _Problem(rates, method, states)
+    problem = _problem(rates, method, states, box)
     with _precision():
         parts = [(problem.bounds(box), dict(box))]
-        gains = _gains(problem, box, parts[0][0])
+        divided = not problem.leading or inf in parts[0][0]  # exact polynomials gain little from smaller parts
+        gains = _gains(problem, box, parts[0][0]) if divided else {}
         while gains and len(parts) < PIECES:
             worst = max(parts, key=lambda part: max(part[0]))
             width = {name: (worst[1][name][1] - worst[1][name][0]) / (box[name][1] - box[name][0]) for name in gains}
@@ -338,28 +346,114 @@ def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float
     return gains
 
 
+Terms = list[tuple[Fraction, tuple[tuple[str, int], ...]]]  # of a polynomial: coefficient, exponents of its variables
+
+
+def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) -> "_Problem":
+    """Return the data from which bounds on boxes are computed; polynomial rates are expanded once."""
+    orders = range(method.order + 1, min(method.order + 1 + EXACT_ORDERS, HIGHEST))
+    formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
+    if not orders or not all(map(_is_polynomial, formulas)):
+        return _Problem(rates, method, states, ())
+    from sympy import QQ, ring
+
+    names = [*states, *(name for name, (low, high) in box.items() if name not in (*states, SIZE) and low < high), "t"]
+    domain, *generators = ring(list(dict.fromkeys(names)), QQ)
+
+    def number(value: Fraction) -> Any:
+        return domain(QQ(value.numerator, value.denominator))
+
+    values = {name: number(low) for name, (low, _) in box.items()}
+    values |= dict(zip(dict.fromkeys(names), generators, strict=True))
+    expanded = {name: _terms(each) for name, each in rates.evaluate(values, {}, number).items()}
+    bare = Program(rates.signature, (), tuple((name, _sum_of(terms)) for name, terms in expanded.items()))
+    count = orders[-1] + 1
+    exact = coefficients(recurrences(bare), count - 1, values, {}, number)
+    size = _Power((0, number(Fraction(1)), *(0,) * (count - 2)))
+    start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
+    after = stepped(bare, method, start, size, {}, lambda value: _Power.of(number(value), count))
+    own = [_Power.of(each, count).terms for each in after]
+    leading = tuple(
+        [_terms(domain(0) + mine[order] - step[order]) for mine, step in zip(exact, own, strict=True)]
+        for order in orders
+    )
+    return _Problem(bare, method, states, leading)
+
+
+def _is_polynomial(node: Node) -> bool:
+    """Return whether a formula is written without functions, and without divisions but by numbers."""
+    if node[0] in ("number", "symbol"):
+        return True
+    if node[0] == "call" or (node[0] == "/" and node[2][0] != "number"):
+        return False
+    return _is_polynomial(node[1]) and node[2] >= 0 if node[0] == "**" else all(map(_is_polynomial, node[1:]))
+
+
+def _terms(polynomial: Any) -> Terms:
+    """Return the terms of a polynomial of SymPy's ring, in its order."""
+    names = [str(symbol) for symbol in polynomial.ring.symbols]
+    return [
+        (Fraction(int(value.numerator), int(value.denominator)),
+         tuple((name, power) for name, power in zip(names, powers, strict=True) if power))
+        for powers, value in polynomial.terms()
+        if value
+    ]  # fmt: skip
+
+
+def _sum_of(terms: Terms) -> Node:
+    """Return a polynomial as a formula: the sum of its terms."""
+    total: Node = ("number", Fraction(0))
+    for value, powers in terms:
+        term: Node = ("number", value)
+        for name in (name for name, power in powers for _ in range(power)):
+            term = ("*", term, ("symbol", name))
+        total = term if total == ("number", Fraction(0)) else ("+", total, term)
+    return total
+
+
+def _range_of(terms: Terms, values: Mapping[str, Any]) -> Any:
+    """Return an interval that contains a polynomial on a box; even powers are not negative."""
+    total = iv.mpf(0)
+    for value, powers in terms:
+        term = _number(value)
+        for name, power in powers:
+            term = term * values[name] ** power
+        total = total + term
+    return total
+
+
 @dataclass(frozen=True)
 class _Problem:
-    """The rates, the method and the states of a step whose truncation is bounded."""
+    """The rates, the method and the states of a step whose truncation is bounded.
+
+    ``leading`` holds the first coefficients of the difference between motion and method, for each order and state; it
+    is empty if the rates are no polynomials.
+    """
 
     rates: Program
     method: Method
     states: Sequence[str]
+    leading: tuple[list[Terms], ...]
 
     def bounds(self, box: Box) -> list[float]:
         """Return the bounds on one box, by state; all are infinite if no box contains the motions."""
         values: dict[str, Any] = {name: _interval(*ends) for name, ends in box.items()}
         low, high = box[SIZE]
         span = _interval(min(low, Fraction(0)), max(high, Fraction(0)))  # all times from the start to the end
-        order = self.method.order
+        size = _number(max(abs(low), abs(high)))
+        first = self.method.order + 1
+        last = first + len(self.leading)
         try:
             during = self._enclosure(values, span)
             if during is None:
                 return [inf] * len(self.states)
-            exact = coefficients(recurrences(self.rates), order + 1, during, _Functions(_SCALAR), _number)
-            ends = self._step_coefficients(values, span)
-            power = _number(max(abs(low), abs(high))) ** (order + 1)
-            return [_upper(abs(mine[order + 1] - own) * power) for mine, own in zip(exact, ends, strict=True)]
+            exact = coefficients(recurrences(self.rates), last, during, _Functions(_SCALAR), _number)
+            ends = self._step_coefficients(values, span, last)
+            errors = [abs(mine[last] - own) * size**last for mine, own in zip(exact, ends, strict=True)]
+            for order, polynomials in enumerate(self.leading, start=first):
+                for i, terms in enumerate(polynomials):
+                    errors[i] = errors[i] + abs(_range_of(terms, values)) * size**order
+            return [_upper(error) for error in errors]
         except ZeroDivisionError:
             return [inf] * len(self.states)
 
@@ -380,11 +474,11 @@ class _Problem:
                 around[name] = iv.mpf([(low - spare).a, (high + spare).b])
         return None
 
-    def _step_coefficients(self, values: Mapping[str, Any], span: Any) -> list[Any]:
-        """Return the Taylor coefficient of order n + 1 of the step's formula, at all sizes of the span."""
+    def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
+        """Return a Taylor coefficient of the step's formula above the order of the method, at all sizes of the span."""
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
-        count = self.method.order + 2
+        count = order + 1
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})

@@ -111,8 +111,8 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Nod
         return verdict
     diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")
     start, end = _scientific(side.args[0] if side.kind == "neg" else side)[0].span
-    shown = right.partition("e")[0] if end != side.span[1] else right
-    written = shown.removeprefix("-") if side.kind == "neg" else shown
+    digits_only = right.partition("e")[0] if end != side.span[1] else right
+    written = digits_only.removeprefix("-") if side.kind == "neg" else digits_only
     repair = Repair(source[:start] + written + source[end:], "digits", 1.0)
     witness = decision.counterexample
     if witness is not None and side is claim.relation[1]:  # type: ignore[index]

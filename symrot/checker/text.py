@@ -9,12 +9,13 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd
 from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
-from symrot.checker.claim.reader import Declared, Reading, readings_of
+from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
@@ -52,6 +53,9 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
+CALLS_FOR_ARRAYS = ("qmul(", "eye(")
+"""Calls that answers have only if the claim has one of them."""
+
 ZERO = Node("number", Fraction(0))
 
 AS_TYPED = ("degrees",)
@@ -322,8 +326,12 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
         verdict = Verdict("definition", reason=INDEX_CONDITION, notes=verdict.notes, dimension=verdict.dimension)
     repairs = tuple(
-        repair if repair.code in AS_TYPED else _marked(repair, claim, notation) for repair in verdict.repairs
+        repair if repair.code in AS_TYPED else _marked(repair, claim, notation)
+        for repair in verdict.repairs
+        if not _is_odd(repair)
     )
+    texts = [repair.text for repair in repairs]
+    repairs = tuple(repair for place, repair in enumerate(repairs) if repair.text not in texts[:place])
     requires, conditions = (
         tuple(notation.condition(text) for text in texts) for texts in (verdict.requires, verdict.conditions)
     )
@@ -385,11 +393,36 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     """Return a repair in the notation of the claim, with the positions at which it differs from the claim."""
-    text = notation.rewritten(repair.text)
     if claim.relation is None:
-        return replace(repair, text=text)
-    changed = changed_spans(notation.rewritten(relation_text(claim.relation)), text)
+        return replace(repair, text=notation.rewritten(repair.text))
+    texts: Sequence[str] = (relation_text(claim.relation), repair.text)
+    if not any(call in claim.text for call in CALLS_FOR_ARRAYS):
+        texts = list(map(_with_plain_arrays, texts))
+    before, after = map(notation.rewritten, texts)
+    changed, text = changed_spans(before, after), after
     return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
+
+
+def _with_plain_arrays(source: str) -> str:
+    """Return the text of an equation with quaternions and Pauli's matrices as people write them."""
+    relation = _relation_of(source)
+    if relation is None or not has_arrays(relation[1:]):
+        return source
+    sign, left, right = relation
+    return relation_text((sign, as_written(left), as_written(right)))
+
+
+def _relation_of(source: str) -> Relation | None:
+    """Return the equation of a text; None for a repair with words in it."""
+    try:
+        return read_relation(source)
+    except InputError:
+        return None
+
+
+def _is_odd(repair: Repair) -> bool:
+    relation = _relation_of(repair.text)
+    return relation is not None and is_odd(relation[1:])
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
@@ -503,7 +536,8 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
         elif verdict.verdict == "false" and _names(left) and not _names(right) - {"pi"} and _depends_on_letters(claim):
             letters = " and ".join(sorted(_names(left) - {"pi"}))
             verdict = Verdict(
-                "definition", reason=f"it holds only for certain values of {letters}, and the text does not state any"
+                "definition",
+                reason=f"the equation holds only for certain values of {letters}, and the text does not state any",
             )
         decided.append(verdict)
     return decided

@@ -93,7 +93,8 @@ def _run(options: Namespace) -> int:
     scene = cli_scenes.load(options)
     progress("preparing the kernel (a compiler has at most 300 s) ..")
     start = perf_counter()
-    propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
+    names = options.sensitivities.split(",") if options.sensitivities is not None else None
+    propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state, sensitivities=names)
     propagator.prepare()
     preparation = perf_counter() - start
     trajectory = _trajectory(propagator, options)
@@ -380,6 +381,8 @@ def _run_arguments(parser: ArgumentParser) -> None:
         metavar="SEQUENCE",
         help="integrate Euler angles of this sequence, such as ZXZ (default: quaternion)",
     )
+    parser.add_argument("--sensitivities", metavar="NAME,..", help="also compute the derivatives of the motion by "
+                        "these initial values and constants, such as omega,weight; --out writes them")  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE",
                         help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for an animated page")  # fmt: skip

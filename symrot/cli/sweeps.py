@@ -57,7 +57,10 @@ def _times(text: str | None) -> Any:
 
 @contextmanager
 def _bar() -> Iterator[Callable[[int, int], None]]:
-    """Show complete trajectories, their rate and the time left, by tqdm if it is installed, otherwise as one line."""
+    """Show how many trajectories are complete, how many per second, and the time left.
+
+    tqdm draws the bar if it is installed; otherwise one line shows the number.
+    """
     try:
         from tqdm import tqdm
     except ImportError:

@@ -238,7 +238,10 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the memory addresses of the rows of ``table`` by name; ``table`` has one column per leg."""
+        """Return the memory address of each row of ``table``, by the row's name.
+
+        The table has one column per leg: a leg is one motion in one direction of time.
+        """
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 

@@ -9,7 +9,7 @@ from symrot.lessons.lesson import Lesson
 from symrot.lessons.mistakes import mistake_passages
 from symrot.lessons.numbers import numbers_of
 from symrot.lessons.table import LESSONS
-from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 
 __all__ = ["taught"]
 
@@ -56,6 +56,8 @@ def _steps_of(page: Page, sections: Sequence[str]) -> int:
             title = item.title
         elif isinstance(item, Step):
             counts[title] = counts.get(title, 0) + 1
+        elif isinstance(item, Table):
+            counts[title] = counts.get(title, 0) + len(item.steps)
     if not set(sections) <= set(counts):
         raise InputError(f"{page.name}: expected sections of the page, got {[*sections]}")
     return sum(counts[section] for section in sections)

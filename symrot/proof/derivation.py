@@ -32,7 +32,7 @@ from symrot.exact.decision import Decision
 from symrot.exact.ring.ring import as_zero
 from symrot.proof.notation.latex_reader import Unread, key, parts, read
 from symrot.proof.notation.printer import formula
-from symrot.proof.page import Page, Passage, Section, Step
+from symrot.proof.page import Page, Passage, Section, Step, Table
 from symrot.proof.pages import excerpt, html_document, latex_document, markdown
 
 __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Step"]
@@ -219,6 +219,23 @@ class Derivation(PrintedPage):
                 tuple(board),
             )
         )  # fmt: skip
+
+    def tabulate(self, text: str, head: Sequence[str], rows: Sequence[tuple[Sequence[str], Sequence[Step]]]) -> None:
+        """Print steps that have been added already as the rows of one table, below everything else on the page so far.
+
+        Parameters
+        ----------
+        text : str
+            The paragraph above the table.
+        head : sequence of str
+            Titles of the columns.
+        rows : sequence of (cells, steps)
+            The cells of each row, Markdown, and the steps that prove them.
+        """
+        table = Table(text, tuple(head), tuple((tuple(cells), tuple(steps)) for cells, steps in rows))
+        moved = {id(step) for step in table.steps}
+        self.items = [item for item in self.items if id(item) not in moved]
+        self.items.append(table)
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
         """Prove ``expression > 0`` from the signs of the symbols in it, and add it as a step; return the step.

@@ -10,7 +10,7 @@ from sympy import Expr
 
 import symrot
 
-__all__ = ["Drawing", "Figure", "Page", "Passage", "Section", "Step"]
+__all__ = ["Drawing", "Figure", "Page", "Passage", "Section", "Step", "Table"]
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,40 @@ class Step:
         return symrot.in_notebook(self)
 
 
+@dataclass(frozen=True)
+class Table:
+    """Table on a page: results of one kind, one row for each case, such as each sequence of Euler angles.
+
+    Attributes
+    ----------
+    text : str
+        The paragraph above the table.
+    head : tuple of str
+        Titles of the columns; the printers put a column with the numbers of the steps in front.
+    rows : tuple of (tuple of str, tuple of Step)
+        The cells of each row, and the steps that prove them. Formulas in cells are LaTeX between ``$``.
+
+    Examples
+    --------
+    >>> Table("Sums:", ("n", "sum"), ((("1", "$1$"), ()),)).steps
+    ()
+    """
+
+    text: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[tuple[str, ...], tuple[Step, ...]], ...]
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps that prove the rows, in order."""
+        return tuple(step for _, steps in self.rows for step in steps)
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether any row has a step, so that the table has a column of numbers."""
+        return bool(self.steps)
+
+
 class Drawing(Protocol):
     """Drawing that can be written as SVG."""
 
@@ -155,7 +189,7 @@ class Page:
     about : str
         One paragraph about the subject and its use.
     items : list
-        Headings, passages, steps and figures, in order.
+        Headings, passages, steps, tables and figures, in order.
     first : int
         The number of the first step; not 1 on a page with a part of a derivation.
     opening : list
@@ -172,7 +206,7 @@ class Page:
     title: str
     source: str = ""
     about: str = ""
-    items: list[Section | Passage | Step | Figure] = field(default_factory=list)
+    items: list[Section | Passage | Step | Table | Figure] = field(default_factory=list)
     first: int = 1
     file: str = ""
     opening: list[Passage | Figure] = field(default_factory=list)
@@ -188,5 +222,11 @@ class Page:
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """The proven steps, in order."""
-        return tuple(item for item in self.items if isinstance(item, Step))
+        """The proven steps, in order; also those in tables."""
+        steps: list[Step] = []
+        for item in self.items:
+            if isinstance(item, Step):
+                steps.append(item)
+            elif isinstance(item, Table):
+                steps += item.steps
+        return tuple(steps)

@@ -84,7 +84,8 @@ class Setup:
     Attributes
     ----------
     plan : Plan
-        The plan of the scene with one initial state of the structure; each motion also has its own plan.
+        The plan from which the setup was made. Other scenes whose equations have the same form share the setup; their
+        motions have plans of their own.
     choice : Choice
         The method, and the reason for it.
     tolerance : float

@@ -1,6 +1,6 @@
 """The functions propagator() and propagate(), which check the options and choose the class of propagator."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Any
 
@@ -34,6 +34,7 @@ def propagator(
     state: str = "quaternion",
     switching: bool = True,
     max_step: float = inf,
+    sensitivities: Sequence[str] | None = None,
 ) -> Propagator:
     """Return the propagator of a scene: a function from times to the motion.
 
@@ -78,6 +79,11 @@ def propagator(
     max_step : float
         Longest step, s, under an additional torque that is a function; choose it shorter than the shortest pulse of the
         torque. Formulas need no such limit; for a table it follows from the samples.
+    sensitivities : sequence of str, optional
+        Initial values and constants by which the motion is differentiated: ``"omega"`` (three components),
+        ``"attitude"`` (a small rotation about each body axis), or names of :meth:`symrot.Scene.with_` such as
+        ``"weight"``. The derivatives are ``sensitivities`` of a trajectory. For every method, also for closed forms,
+        Taylor series of the variational equations compute them.
 
     Returns
     -------
@@ -109,6 +115,8 @@ def propagator(
             raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
         samples = scene.table
         torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
+    if sensitivities is not None:
+        _refuse_sensitivities(scene, torque, state)
     if state != "quaternion":
         if torque is not None:
             raise InputError(f"state: expected 'quaternion' for a torque without a formula, got {state!r}")
@@ -126,7 +134,7 @@ def propagator(
             from symrot.propagation.switched.motion import SwitchedPropagator
 
             return SwitchedPropagator(scene, method, aim)
-        return Propagator(scene, method, aim)
+        return Propagator(scene, method, aim, sensitivities)
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
     if switched(scene):
@@ -137,6 +145,19 @@ def propagator(
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
     return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+
+
+def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
+    """Raise InputError for a motion whose derivatives are not computed."""
+    if state != "quaternion":
+        raise InputError(f"sensitivities: expected the state 'quaternion', got {state!r}")
+    if torque is not None:
+        raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
+    if switched(scene):
+        raise InputError(
+            "sensitivities: expected smooth torques, got formulas that jump or bend (abs, sign, ..), where the "
+            "derivatives of a motion jump"
+        )
 
 
 def _with_values(
@@ -177,6 +198,7 @@ def propagate(
     state: str = "quaternion",
     switching: bool = True,
     max_step: float = inf,
+    sensitivities: Sequence[str] | None = None,
 ) -> Trajectory:
     """Return the motion of a scene.
 
@@ -189,6 +211,8 @@ def propagate(
     t : array, shape (n,), optional
         Sample times in s, in any order; default: the sample times of the scene.
     omega, quaternion, attitude, parameters, torque, switching_times, torque_frame, state, switching, max_step
+        As for :func:`propagator`.
+    sensitivities
         As for :func:`propagator`.
 
     Returns
@@ -231,4 +255,5 @@ def propagate(
         state=state,
         switching=switching,
         max_step=max_step,
+        sensitivities=sensitivities,
     )(t, events=events)

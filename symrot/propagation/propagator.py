@@ -1,12 +1,12 @@
 """The propagator of a scene: it chooses a method and prepares the kernel once, then computes any number of motions."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
 from time import perf_counter
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,9 @@ from symrot.scene.attitude import read_attitude, refuse_two
 from symrot.scene.content import plain
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
+
+if TYPE_CHECKING:
+    from symrot.results.sensitivity import Sensitivities
 
 __all__ = ["Propagator", "read_start"]
 
@@ -48,6 +51,8 @@ class Propagator:
         The scene whose motion is computed.
     tolerance : float
         Error of the trajectory to aim for.
+    sensitivities : sequence of str, or None
+        The initial values and constants by which derivatives of the motion are computed.
 
     Examples
     --------
@@ -57,8 +62,12 @@ class Propagator:
     [0.0, 2.0, 0.1]
     """
 
-    def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
+    sensitivities: Sequence[str] | None = None
+
+    def __init__(self, scene: Scene, method: str, tolerance: float, sensitivities: Sequence[str] | None = None) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
+        if sensitivities is not None:
+            self.sensitivities = _variables(scene, sensitivities)
         self._motion  # noqa: B018
 
     def __repr__(self) -> str:
@@ -183,13 +192,36 @@ class Propagator:
         if omega is not None or quaternion is not None or attitude is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion, attitude))
         setup, began = motion.setup, perf_counter()
+        if events is not None and self.sensitivities is not None:
+            raise InputError(
+                "events: leave them out with sensitivities, because the time of an event changes with the variables"
+            )
         try:
             if events is not None:
                 return self._with_events(motion, times, events)
             states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._with_samples(error, motion, times, began) from None
-        return Trajectory(motion, times, states, setup.choice.method, stats, setup.message, propagator=self)
+        trajectory = Trajectory(motion, times, states, setup.choice.method, stats, setup.message, propagator=self)
+        trajectory.sensitivities = self.sensitivities_of(trajectory.scene, times)
+        return trajectory
+
+    def sensitivities_of(self, scene: Scene, times: Floats) -> "Sensitivities | None":
+        """Return the derivatives of a scene's motion at sample times, s; None if the propagator computes none.
+
+        ``scene`` is the scene of the propagator with any initial state.
+        """
+        if self.sensitivities is None:
+            return None
+        from symrot.propagation.sensitivities.variation import variation
+
+        return variation(scene, self.sensitivities, times)
+
+    def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
+        """Return the state transition matrix of a scene's motion, see :meth:`Trajectory.transition`."""
+        from symrot.propagation.sensitivities.variation import transition_matrix
+
+        return transition_matrix(scene, t0, t1)
 
     def _of(self, scene: Scene) -> Self:
         """Return a propagator of another scene with the same options."""
@@ -227,6 +259,14 @@ class Propagator:
             part.message, part.status = str(ended) or "interrupted", -1
             ended.trajectory = part  # type: ignore[attr-defined]
         return ended
+
+
+def _variables(scene: Scene, names: Sequence[str]) -> Sequence[str]:
+    """Return the names of variables; raise InputError if one names no initial value or constant of the scene."""
+    from symrot.propagation.sensitivities.variables import read_variables
+
+    read_variables(scene, names)
+    return names
 
 
 def _times(t: ArrayLike) -> Floats:

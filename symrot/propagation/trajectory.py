@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
 from pickle import PicklingError
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,9 @@ from symrot.propagation.steppers.stepping import Stats
 from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
+
+if TYPE_CHECKING:
+    from symrot.results.sensitivity import Sensitivities
 
 __all__ = ["Invariant", "Trajectory"]
 
@@ -67,6 +70,12 @@ class MotionSource(Protocol):
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from an initial state."""
 
+    def sensitivities_of(self, scene: Scene, times: Floats) -> "Sensitivities | None":
+        """Return the derivatives of a scene's motion at sample times; None if none were requested."""
+
+    def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
+        """Return the state transition matrix of a scene's motion."""
+
 
 class Trajectory(MotionSamples):
     """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
@@ -98,6 +107,8 @@ class Trajectory(MotionSamples):
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     events : tuple of Event, or None
         The requested events. :attr:`at_events` has a trajectory of the samples at each of them.
+    sensitivities : Sensitivities or None
+        The derivatives of the motion by initial values and constants, if they were requested.
     event_kinds : list of lists of str, or None
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
@@ -125,6 +136,7 @@ class Trajectory(MotionSamples):
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.status, self.warnings = 0, motion.setup.warnings
         self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
+        self.sensitivities: Sensitivities | None = None
         if events is not None:
             self.status, self.warnings = int(events.ended), (*self.warnings, *events.warnings)
             self.t_events, self.y_events, self.event_kinds = events.t_events, events.y_events, events.kinds
@@ -300,7 +312,42 @@ class Trajectory(MotionSamples):
     def _sampled(self, t: Floats, states: Floats) -> "Trajectory":
         other = Trajectory(self._motion, t, states, self.method, self.stats, self.message, propagator=self._propagator)
         other.warnings = self.warnings
+        if self.sensitivities is not None and self._propagator is not None:
+            other.sensitivities = self._propagator.sensitivities_of(self.scene, t)
         return other
+
+    def transition(self, t0: float, t1: float) -> Floats:
+        """Return the state transition matrix from time t0 to time t1, shape (6, 6), such as a Kalman filter needs.
+
+        It maps a small change of the state at t0 to the change at t1. The components are those of the angular velocity,
+        body components, rad/s, then of a small rotation about the body axes, rad: the error state of a multiplicative
+        filter. Variational Taylor series compute it for every method, also for closed forms.
+
+        Parameters
+        ----------
+        t0, t1 : float
+            Two times, s; t1 may be before t0.
+
+        Raises
+        ------
+        InputError
+            If the times are not finite, or if the torques have no derivatives: a torque without a formula, or formulas
+            that jump or bend.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> motion = symrot.propagate("t_handle")
+        >>> there, back = motion.transition(1.0, 1.5), motion.transition(1.5, 1.0)
+        >>> float(abs(there @ back - np.eye(6)).max()) < 1e-12
+        True
+        """
+        times = [float(real_array(t, name, "a time in s")) for t, name in ((t0, "t0"), (t1, "t1"))]
+        if not np.isfinite(times).all():
+            raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
+        if self.has_external_torque or self._propagator is None:
+            raise InputError("transition: expected torques with formulas, got a motion under a torque without one")
+        return self._propagator.transition(self.scene, times[0], times[1])
 
     @cached_property
     def _span(self) -> tuple[float, float]:
@@ -338,7 +385,8 @@ class Trajectory(MotionSamples):
         """
         if quantities is None:
             present = ("omega", "quaternion") if self.has_attitude else ("omega",)
-            quantities = tuple(dict.fromkeys((*present, *self.scene.output.quantities)))
+            derivatives = [item.name for item in self.sensitivities._labelled()] if self.sensitivities else []
+            quantities = tuple(dict.fromkeys((*present, *self.scene.output.quantities, *derivatives)))
         return symrot.save(self, path, quantities)
 
     def show(self, path: str | Path | None = None) -> Path:

@@ -28,7 +28,7 @@ def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
     """Return the description that a trajectory file begins with: scene, method, conventions, meaning of each array."""
     requested = zip(trajectory.events or (), trajectory.event_kinds or (), trajectory.t_events or (), strict=True)
     scene, stats = trajectory.scene, trajectory.stats
-    return {
+    about: FileRecord = {
         "symrot": __version__,
         "scene": scene.name,
         "title": scene.title,
@@ -56,6 +56,9 @@ def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
         ],
         "conventions": _conventions(),
     }  # fmt: skip
+    if trajectory.sensitivities is not None:
+        about["sensitivities"] = trajectory.sensitivities.record
+    return about
 
 
 def _conventions() -> str:

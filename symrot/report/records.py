@@ -3,11 +3,11 @@
 Only type checkers import this module, so that no command waits for it.
 """
 
-from typing import NotRequired, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 __all__ = [
-    "ArrayRecord", "BodyRecord", "CostRecord", "FileRecord", "FinalRecord", "LostRecord", "OperationsRecord",
-    "PlanReport", "PlanRow", "RunReport", "SwitchingRecord", "WrittenRecord",
+    "ArrayRecord", "BodyRecord", "CostRecord", "DerivativeRecord", "FileRecord", "FinalRecord", "LostRecord",
+    "OperationsRecord", "PlanReport", "PlanRow", "RunReport", "SwitchingRecord", "WrittenRecord",
 ]  # fmt: skip
 
 
@@ -106,12 +106,21 @@ class LostRecord(TypedDict):
     reason: str
 
 
+class DerivativeRecord(TypedDict):
+    """The derivatives of the last sample by one variable: of omega, rad/s, and of the attitude as a small rotation."""
+
+    omega: list[float]
+    rotation: list[float]
+    unit: str
+
+
 class FinalRecord(TypedDict):
-    """The last sample of a motion: ``t`` (s), ``omega`` (rad/s), and the quaternion if it was computed."""
+    """The last sample of a motion: ``t`` (s), ``omega`` (rad/s), and the quaternion and derivatives if computed."""
 
     t: float
     omega: list[float]
     quaternion: NotRequired[list[float]]
+    sensitivities: NotRequired[dict[str, DerivativeRecord]]
 
 
 class WrittenRecord(TypedDict):
@@ -232,3 +241,4 @@ class FileRecord(TypedDict):
     invariants: list[DriftRecord]
     events: list[EventRecord]
     conventions: str
+    sensitivities: NotRequired[dict[str, Any]]

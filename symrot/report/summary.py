@@ -40,6 +40,11 @@ def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float
     final: FinalRecord = {"t": float(trajectory.t[-1]), "omega": trajectory.omega[-1].tolist()}
     if trajectory.has_attitude:
         final["quaternion"] = trajectory.quaternion[-1].tolist()
+    if (every := trajectory.sensitivities) is not None:
+        final["sensitivities"] = {
+            name: {"omega": every[name].omega[-1].tolist(), "rotation": every[name].rotation[-1].tolist(), "unit": unit}
+            for name, unit in zip(every.variables, every.units, strict=True)
+        }
     return {
         "symrot": __version__,
         "scene": {"name": scene.name, "title": scene.title, "source": scene.source, "path": scene.path},
@@ -202,6 +207,9 @@ def _final(final: "FinalRecord", start: float) -> list[str]:
     ]
     if "quaternion" in final:
         rows.append(("  attitude", f"({_numbers(final['quaternion'], 12)}) as a quaternion"))
+    for name, slopes in final.get("sensitivities", {}).items():
+        rows.append((f"  by {name}", f"omega ({_numbers(slopes['omega'], 9)}), "
+                     f"rotation about the body axes ({_numbers(slopes['rotation'], 9)})"))  # fmt: skip
     return [f"  {line}" for line in fields(rows)]
 
 

@@ -77,7 +77,8 @@ def event_array(number: int, quantity: str) -> str:
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
-    """Return the time and the named quantities of a trajectory with labels; default: the scene's output quantities.
+    """Return the time and the named quantities of a trajectory with labels; default: the scene's output quantities,
+    and the derivatives by initial values and constants if the trajectory has them.
 
     After Euler angles comes the quantity :data:`LOCK`, which is true for samples at gimbal lock: there only the sum or
     the difference of two angles is defined.
@@ -87,12 +88,15 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
     InputError
         If there is no quantity with one of the names, or if the trajectory cannot compute it.
     """
-    output = trajectory.scene.output
+    output, derivatives = trajectory.scene.output, _derivatives(trajectory)
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
     chosen = output.quantities if names is None else (names,) if isinstance(names, str) else names
     for name in chosen:
+        if name in derivatives:
+            quantities.append(derivatives[name])
+            continue
         if name not in QUANTITIES:
-            raise InputError(f"quantities: expected names among {', '.join(QUANTITIES)}, got {name!r}")
+            raise InputError(f"quantities: expected names among {', '.join([*QUANTITIES, *derivatives])}, got {name!r}")
         unit, meaning = QUANTITIES[name]
         components = COMPONENTS.get(name, ())
         if name == "euler":
@@ -102,4 +106,10 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
             locked = np.asarray(trajectory.gimbal_lock(output.sequence))
             meaning = "1 where the Euler sequence is at gimbal lock, else 0"
             quantities.append(Labelled(LOCK, locked, (LOCK,), "1", FRAMES[LOCK], meaning))
-    return quantities
+    return quantities if names is not None else [*quantities, *derivatives.values()]
+
+
+def _derivatives(trajectory: Any) -> dict[str, Labelled]:
+    """Return the labelled derivatives of a trajectory by initial values and constants, by name; empty without them."""
+    sensitivities = getattr(trajectory, "sensitivities", None)
+    return {} if sensitivities is None else {item.name: item for item in sensitivities._labelled()}

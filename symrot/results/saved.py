@@ -19,6 +19,7 @@ from symrot.errors import InputError
 from symrot.files.reading import refuse_special
 from symrot.results.labels import About, Labelled, event_array
 from symrot.results.samples import Samples
+from symrot.results.sensitivity import Sensitivities, restored
 
 __all__ = ["SavedTrajectory", "load"]
 
@@ -88,6 +89,12 @@ class SavedTrajectory(Samples):
     def quaternion(self) -> Floats:
         """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
         return self.quantity("quaternion")
+
+    @cached_property
+    def sensitivities(self) -> Sensitivities | None:
+        """The derivatives by initial values and constants; None if the file has none."""
+        record = self.metadata.get("sensitivities")
+        return None if record is None else restored(record, self._items)
 
     @property
     def method(self) -> str:

@@ -13,9 +13,10 @@ import numpy as np
 from symrot.errors import InputError
 from symrot.results.labels import About, Labelled
 
-__all__ = ["dataframe", "dataset"]
+__all__ = ["BY", "dataframe", "dataset"]
 
 MOTION, TIME = "trajectory", "time"
+BY = "_by_"  # between the names of a quantity and of the variable of its derivative
 BODY, SPACE = ("body_axis", [1, 2, 3]), ("space_axis", ["x", "y", "z"])
 AXES: dict[str, tuple[tuple[str, Sequence[Any]], ...]] = {
     "quaternion": (("component", ["q0", "q1", "q2", "q3"]),),
@@ -37,7 +38,7 @@ def _package(name: str, method: str) -> ModuleType:
 def _axes(item: Labelled) -> tuple[tuple[str, Sequence[Any]], ...]:
     if len(item.components) == 1:
         return ()
-    return AXES.get(item.name) or ((BODY if item.frame == "body" else SPACE),)
+    return AXES.get(item.name.partition(BY)[0]) or ((BODY if item.frame == "body" else SPACE),)
 
 
 def dataframe(items: Sequence[Labelled], origin: About) -> Any:

@@ -21,7 +21,7 @@ from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
 from symrot.scene.torque import Torque
 
-__all__ = ["Path", "changed", "path_of", "replaces_shapes"]
+__all__ = ["Path", "changed", "path_of", "present_value", "replaces_shapes"]
 
 Path = tuple[str | int, ...]
 
@@ -101,6 +101,40 @@ def changed(
         scene = _Scene(result, omega_b, body, torques)
         _set(scene, key, plain(value, f"{key}: "))
     return result
+
+
+def present_value(
+    content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
+) -> Any:
+    """Return the present value that a key names, as the content gives it, or as it was read from the content.
+
+    The arguments are those of :func:`changed`, which replaces the value.
+
+    Raises
+    ------
+    InputError
+        If a key names nothing in the scene, or a value that the content does not give.
+    """
+    scene = _Scene(content, omega_b, body, torques)
+    if key in TENSOR:
+        i, j = (INDEX[axis] for axis in key[-2:])
+        return _tensor(scene)[i][j]
+    if key == "principal":
+        return list(body.principal.moments)
+    if key == "omega":
+        return list(omega_b)
+    place = _place(scene, key)
+    if place.component is not None:
+        return _vector(scene, place.path)[place.component]
+    value: Any = content
+    for step in place.path:
+        inside = isinstance(value, dict) and step in value
+        if not inside and not (isinstance(value, list) and isinstance(step, int) and step < len(value)):
+            if place.path[0] == "torque" and len(place.path) == 3 and place.path[2] in ("center_of_mass", "direction"):
+                return list(_vector(scene, place.path))
+            raise InputError(f"{key}: expected a value that the scene gives, got {_text(place)}, which it does not")
+        value = value[step]
+    return value
 
 
 def replaces_shapes(key: str) -> bool:

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import symrot
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
-from symrot.formula.exact_numbers import show
+from symrot.formula.exact_numbers import read, show
 from symrot.scene.body import Body, read_body
-from symrot.scene.changes import changed, replaces_shapes
+from symrot.scene.changes import changed, present_value, replaces_shapes
 from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
 from symrot.scene.folders import Folders
@@ -214,6 +214,26 @@ class Scene:
         first = {key: value for key, value in every.items() if key not in last}
         shaped = self._changed(first) if first or not last else self
         return shaped._changed(last) if last else shaped
+
+    def value(self, key: str) -> Any:
+        """Return the present value that a key of :meth:`with_` names: an exact number, a list, or other content.
+
+        Raises
+        ------
+        InputError
+            If the key names nothing in the scene, or a value that the scene does not give.
+
+        Examples
+        --------
+        >>> import symrot
+        >>> symrot.load_scene("t_handle").value("omega_2")
+        Fraction(0, 1)
+        """
+        value = present_value(self._content(), key, self.initial.omega_b, self.body, self.torques)
+        try:
+            return read(value)
+        except InputError:
+            return deepcopy(value)
 
     def _changed(self, changes: Mapping[str, Any]) -> "Scene":
         content = changed(self._content(), changes, self.initial.omega_b, self.body, self.torques)

@@ -15,7 +15,7 @@ from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
 from symrot.lessons.page import taught
 from symrot.proof.derivation import PrintedPage
-from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages import book, math_font
 
 __all__ = ["check", "derive_all", "illustrated", "pages", "write_pages"]
@@ -69,7 +69,7 @@ def illustrated(page: Page) -> PrintedPage:
     if not top and 0 < len(figures) <= FEW_FIGURES:
         top = [figures[0]]
         by_section[figures[0].section].remove(figures[0])
-    items: list[Section | Passage | Step | Figure] = []
+    items: list[Section | Passage | Step | Table | Figure] = []
     for item in page.items:
         items.append(item)
         if isinstance(item, Section):

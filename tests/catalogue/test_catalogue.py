@@ -12,12 +12,14 @@ import pytest
 from sympy import Matrix, MatrixBase, Poly, Rational, Symbol
 
 from symrot import catalogue
+from symrot.catalogue.angular_velocity import euler_body_rates
 from symrot.catalogue.tools.power_series import coefficient, indexed
 from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.page import Step, Table
 from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
 
@@ -119,9 +121,25 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
             import_module(catalogue.module_of(name)).derive()
 
 
-def test_every_sequence_has_its_rates(derived):
-    titles = [item.title for item in derived["euler_body_rates"].items if hasattr(item, "title")]
-    assert [title.split(",")[0] for title in titles] == list(SEQUENCES)
+def test_every_sequence_has_its_rates():
+    tables = [item for item in catalogue.derivation("euler_body_rates").items if isinstance(item, Table)]
+    names = [cells[0] for table in tables for cells, steps in table.rows if len(steps) == 4]
+    assert sorted([euler_body_rates.EXAMPLE, *names]) == sorted(SEQUENCES)
+
+
+def test_a_table_numbers_the_steps_that_prove_its_rows():
+    """Each number of a step stands once on the page, and one step of a row can be printed by its number."""
+    page = catalogue.derivation("euler_singularities")
+    numbers = [int(number) for number in re.findall(r"^\*\*(\d+)\.\*\*", page.markdown(), re.MULTILINE)]
+    for first, last in re.findall(r"^\| (\d+)–(\d+) \|", page.markdown(), re.MULTILINE):
+        numbers += range(int(first), int(last) + 1)
+    assert numbers == list(range(1, len(page.steps) + 1))
+    assert page.part(40).steps == (page.steps[39],)
+
+
+def test_the_euler_pages_argue_once():
+    pages = map(catalogue.derivation, ("euler_body_rates", "euler_singularities"))
+    assert sum(page.markdown().count("\n") for page in pages) < 400
 
 
 def test_the_coefficient_of_a_power_is_that_of_the_product():
@@ -203,7 +221,9 @@ def test_all_is_printed_as_html_that_is_well_formed(derived):
         page = found.html()
         tree = ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n").replace('<meta charset="utf-8">', "").replace(
             '<meta name="viewport" content="width=device-width, initial-scale=1">', ""))  # fmt: skip
-        assert len(tree.findall(".//section")) == len(found.steps), name
+        places = {element.get("id") for element in tree.iter()}
+        assert len(tree.findall(".//section")) == sum(isinstance(item, Step) for item in found.items), name
+        assert {f"step-{n}" for n in range(1, len(tree.findall(".//section")) + 1)} <= places, name
         assert "http" not in page.replace("http://www.w3.org/1998/Math/MathML", ""), name
         formulas = {text for element in tree.iter() if "}m" in element.tag for text in element.itertext()}
         assert set("".join(formulas)) - {"\n"} <= characters(), name

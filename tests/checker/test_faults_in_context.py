@@ -1,11 +1,15 @@
 """Faults that show by what the context says, by the lines beside a formula, or by the whole of a formula."""
 
+from types import SimpleNamespace
+
 import pytest
+from sympy import Symbol
 
 import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
 from symrot.checker.repair.edits import bracketed
+from tests.campaigns.checker.repair_claims import claims_of_step
 
 CONES = ["theta = angle between axis and H", "gamma = angle between axis and omega", "I_s = moment about the axis",
          "I = transverse moment"]  # fmt: skip
@@ -60,3 +64,9 @@ def test_inverse_functions_and_the_arguments_of_atan2_are_exchanged():
     assert symrot.check("psi = atan2(R11, R21)", assume=matrix).diagnosis.code == "wrong_symbol"
     assert symrot.check("theta = -acos(R31)", assume=matrix).diagnosis.code == "sin_cos_swap"
     assert symrot.check("θ = acos(q_0)", where=["theta = angle of rotation"]).diagnosis.code == "half_angle"
+
+
+def test_a_step_with_names_that_the_reader_does_not_know_is_left_out_of_the_campaign():
+    index, rest = Symbol("a_{k-2}", real=True), Symbol("b", real=True)
+    step = SimpleNamespace(left=rest, right=rest + 1, hypotheses=(index - rest,))
+    assert claims_of_step(step, "series") == []

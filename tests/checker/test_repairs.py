@@ -139,3 +139,12 @@ def test_the_original_is_recognised_by_its_values_and_another_true_formula_is_no
     definitions = dict(fault.original.define) == dict(fault.claim.define)
     assert not definitions or rank_of(replace(fault, claim=fault.original), [Repair(original, "factor", 1)])[0] == 1
     assert rank_of(fault, [Repair("eye(2) == eye(2)", "factor", 1)])[0] == 0
+
+
+@pytest.mark.parametrize(("claim", "repair"), [
+    ("q q* = 2|q|²", "q*conjugate(q) = abs(q)^2"), ("i j = -k", "j*i = -k"), ("σ_x σ_y = -i σ_z", "σ_y*σ_x = -i*σ_z"),
+])  # fmt: skip
+def test_repairs_with_quaternions_and_matrices_are_written_as_people_write_them(claim, repair):
+    texts = [each.text for each in symrot.check(claim).repairs]
+    assert texts[0] == repair
+    assert not any(word in text for text in texts for word in ("qmul", "dot", "eye", ".T"))

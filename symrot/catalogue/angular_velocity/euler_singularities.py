@@ -1,6 +1,6 @@
 """Gimbal lock of Euler angles, and how their rates grow near it (Stuelpnagel, SIAM Review 6, 1964, 422-430)."""
 
-from sympy import Matrix, Symbol, eye
+from sympy import Expr, Matrix, Symbol, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import squared
@@ -8,10 +8,12 @@ from symrot.conventions import INTRINSIC_SEQUENCES, parse_sequence
 from symrot.exact import normal_form
 from symrot.kinematics.dossier import LockedPoint, singularity_dossier
 from symrot.kinematics.euler import dcm, factors, rate_jacobian
-from symrot.proof.derivation import Derivation
+from symrot.proof.derivation import Derivation, Step
 
 THETA = symbols.theta
 SCALE = Symbol("lambda", real=True)
+EXAMPLE = "ZYX"
+"""The sequence for which the page prints the whole argument; the others are rows of tables."""
 
 
 def derive() -> Derivation:
@@ -24,88 +26,150 @@ def derive() -> Derivation:
             r"No three numbers describe all attitudes without a singularity. Where $\det B = 0$ in $\omega = B \dot "
             "q$, the axes of the first and the last rotation coincide. Then one combination of angle rates does not "
             "rotate the body, the body cannot rotate about one direction, and near such an attitude the rates grow "
-            "like the inverse of the distance from it. This page treats all twelve sequences at each of their "
-            "singular angles. The proof is the same for every sequence, so the reasons are printed for the first "
-            "sequence only; the formulas of the other sequences follow in the same order."
+            "like the inverse of the distance from it. The page shows this for the sequence ZYX; the tables below "
+            "give the results for the other eleven sequences about axes of the body, at each of their singular angles."
         ),
     )
-    for sequence in INTRINSIC_SEQUENCES:
-        _sequence(d, sequence)
+    d.section("The argument, for ZYX")
+    _condition(d, EXAMPLE)
+    _cofactors(d, EXAMPLE)
+    for point in singularity_dossier(EXAMPLE).locked:
+        _locked(d, EXAMPLE, point)
+    d.passage(f"Sequences without gimbal lock at any of the attitudes above: {_regular(EXAMPLE)}.")
+    others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
+    d.section("How close to gimbal lock, for the other sequences")
+    d.tabulate(
+        r"The cosine $c$ of the angle between the first and the last axis decides: the eigenvalues of "
+        r"$B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every angle. The last column has "
+        "the sequences without gimbal lock at any attitude where this sequence is in gimbal lock.",
+        ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
+        [
+            (
+                (sequence, _kind(sequence), f"${_latex(_cosine(sequence))}$", _angles(sequence), _regular(sequence)),
+                (_condition(d, sequence), _cofactors(d, sequence)),
+            )
+            for sequence in others
+        ],
+    )
+    d.section("What is lost at gimbal lock, for the other sequences")
+    d.tabulate(
+        "At each singular angle: the combination of angles on which the attitude depends, the direction $n$ (in body "
+        "components) about which no angle rates rotate the body, and the limit of the rates, with the rates $s$ that "
+        "do not rotate the body.",
+        ("Sequence", r"$\theta$", "Attitude depends on", "$n$", r"$\det B\,\dot q \to$", "$s$"),
+        [
+            (_cells(sequence, point), _locked(d, sequence, point))
+            for sequence in others
+            for point in singularity_dossier(sequence).locked
+        ],
+    )
     return d
 
 
-def _sequence(d: Derivation, sequence: str) -> None:
-    axes, _ = parse_sequence(sequence)
-    proper = axes[0] == axes[2]
-    dossier = singularity_dossier(sequence)
-    jacobian = rate_jacobian(sequence)
-    d.section(f"{sequence}, {'proper Euler' if proper else 'Tait-Bryan'}")
-    first, middle, last = factors(sequence)
-    angle_cosine = (first.direction.T * middle.rotation * last.direction)[0]
-    gram = jacobian.T * jacobian
-    d.step(
+def _condition(d: Derivation, sequence: str) -> Step:
+    jacobian, cosine = rate_jacobian(sequence), _cosine(sequence)
+    return d.step(
         rf"The condition number of $B$ follows from the eigenvalues $\lambda$ of $B^{{\mathsf T}} B$: they are $1$ "
-        rf"and $1 \pm c$, where $c = {_latex(angle_cosine)}$ is the cosine of the angle between the first and the "
+        rf"and $1 \pm c$, where $c = {_latex(cosine)}$ is the cosine of the angle between the first and the "
         "last axis.",
-        (SCALE * eye(3) - gram).det(method="berkowitz"),
-        (SCALE - 1) * (SCALE - 1 - angle_cosine) * (SCALE - 1 + angle_cosine),
+        (SCALE * eye(3) - jacobian.T * jacobian).det(method="berkowitz"),
+        (SCALE - 1) * (SCALE - 1 - cosine) * (SCALE - 1 + cosine),
         because="the middle axis is perpendicular to the other two axes",
         named=r"\det \left( \lambda - B^{\mathsf T} B \right)",
     )
-    adjugate = jacobian.adjugate(method="berkowitz")
-    d.step(
+
+
+def _cofactors(d: Derivation, sequence: str) -> Step:
+    jacobian = rate_jacobian(sequence)
+    return d.step(
         "The product of the determinant of $B$ and its inverse has no denominator, so it is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
-        adjugate,
+        jacobian.adjugate(method="berkowitz"),
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",
         named=r"\det B \; B^{-1}",
         display=r"\mathrm{adj}\,B",
     )
-    for point in dossier.locked:
-        _locked(d, sequence, adjugate, point)
-    if dossier.regular_sequences:
-        d.passage(
-            f"Sequences without gimbal lock at any of the attitudes above: {', '.join(dossier.regular_sequences)}."
-        )
 
 
-def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) -> None:
+def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Step, Step]:
     at = {THETA: point.middle}
     where = rf"\theta = {_latex(point.middle)}"
     jacobian = Matrix(rate_jacobian(sequence)).subs(at)
     silent, lost = Matrix(point.silent_rates), Matrix(point.lost_axis_b)
     attitude = dcm(sequence)
     outer = [attitude.subs(at).diff(angle) for angle in (symbols.phi, symbols.psi)]
-    d.step(
+    alone = d.step(
         f"At ${where}$ the attitude depends on ${_latex(point.combination)}$ alone.",
         silent[0] * outer[0] + silent[2] * outer[1],
         0,
         because="the first and the last rotation are about the same line",
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
-    d.define(
-        "At this angle of gimbal lock, all three axes of rotation are perpendicular to one direction, in body "
-        "components:",
-        "n",
-        lost,
-    )
-    d.step(
+    d.notation({"n": lost})
+    if sequence == EXAMPLE:
+        d.define(
+            "At this angle of gimbal lock, all three axes of rotation are perpendicular to one direction, in body "
+            "components:",
+            "n",
+            lost,
+        )
+    no_rotation = d.step(
         "No angle rates rotate the body about $n$, which has length 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
         because="$n$ is perpendicular to all three axes of rotation",
         named=r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
-    strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
-    d.step(
+    strength = _strength(sequence, point)
+    growth = d.step(
         rf"As $\theta$ approaches gimbal lock at ${where}$, the angle rates grow: $\det B\,\dot q \to "
-        rf"{_sign(strength)}s\,(n \cdot \omega)$. Here $s$ are the angle rates that do not rotate the body.",
-        adjugate.subs(at),
+        f"{_limit(strength)}$. Here $s$ are the angle rates that do not rotate the body.",
+        _adjugate(sequence).subs(at),
         strength * silent * lost.T,
         because="the matrix of cofactors has rank one at gimbal lock",
         named=r"\lim\, \det B\; B^{-1}",
         display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )
+    return alone, no_rotation, growth
+
+
+def _cells(sequence: str, point: LockedPoint) -> tuple[str, ...]:
+    values = point.middle, point.combination, Matrix(point.lost_axis_b), _limit(_strength(sequence, point))
+    return sequence, *(f"${_latex(value)}$" for value in (*values, Matrix(point.silent_rates)))
+
+
+def _cosine(sequence: str) -> Expr:
+    """Return the cosine of the angle between the first and the last axis of rotation."""
+    first, middle, last = factors(sequence)
+    return (first.direction.T * middle.rotation * last.direction)[0]
+
+
+def _adjugate(sequence: str) -> Matrix:
+    return rate_jacobian(sequence).adjugate(method="berkowitz")
+
+
+def _strength(sequence: str, point: LockedPoint) -> Expr:
+    """Return the factor k of the limit of det B times the inverse: ``k s n^T``."""
+    silent, lost = Matrix(point.silent_rates), Matrix(point.lost_axis_b)
+    return normal_form((_adjugate(sequence).subs({THETA: point.middle}) * lost).dot(silent) / silent.dot(silent))
+
+
+def _kind(sequence: str) -> str:
+    axes, _ = parse_sequence(sequence)
+    return "proper Euler" if axes[0] == axes[2] else "Tait-Bryan"
+
+
+def _angles(sequence: str) -> str:
+    points = ", ".join(_latex(point.middle) for point in singularity_dossier(sequence).locked)
+    return rf"$\theta = {points}$"
+
+
+def _regular(sequence: str) -> str:
+    return ", ".join(singularity_dossier(sequence).regular_sequences) or "none"
+
+
+def _limit(strength: object) -> str:
+    return rf"{_sign(strength)}s\,(n \cdot \omega)"
 
 
 def _sign(strength: object) -> str:

@@ -111,8 +111,8 @@ def _two_turns(d: Derivation) -> None:
         (r"\dot\psi", r"\frac{2 T + H\,\omega_3}{H + L_3}"),
     )
     d.step(
-        r"With this rate of $\psi$, the matrix $R = R_3(\psi)\,P$ satisfies the equation of the attitude, in all nine "
-        "entries.",
+        r"With $\dot\psi = (2 T + H\,\omega_3)/(H + L_3)$, the matrix $R = R_3(\psi)\,P$ satisfies the equation of the "
+        "attitude, in all nine entries.",
         rate(about * smallest, along | {PSI: speed}),
         about * smallest * skew(OMEGA),
         because=r"$\dot L = L \times \omega$ for the components of $P$",

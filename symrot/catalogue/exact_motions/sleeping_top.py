@@ -144,8 +144,8 @@ def _separatrix(d: Derivation) -> None:
         display=r"\frac{p_\psi}{A (1 + u)}",
     )
     d.step(
-        "The sine of half the nutation is proportional to a hyperbolic secant: the axis rises, and falls again "
-        "without passing through the vertical.",
+        "The sine of half the nutation is proportional to a hyperbolic secant: the axis falls from near the vertical "
+        "to the height $u_1$ at $t = 0$, then rises towards the vertical again, without reaching it in a finite time.",
         (1 - height) / 2,
         (1 - lowest) / 2 * (1 - h**2),
         because="$1 - u$ is substituted",

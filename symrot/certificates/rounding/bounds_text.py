@@ -53,7 +53,11 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the part of a kernel's section ``rounding`` with restrictions of inputs, error of libm and budget."""
+    """Return the assumptions of a kernel's error bounds, as its certificate lists them in the section ``rounding``.
+
+    They are the restrictions of the inputs, the assumed error of the functions of libm, and the budget: how many
+    boxes of inputs the search for the largest error of each output may evaluate.
+    """
     region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),

@@ -47,12 +47,14 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
+    below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in LETTERS[: 2 if has_matrices else None]:  # cos(x)*I + (1 - cos(x))*n*n.T has the unit matrix
         for node in nodes:
             inside = _exponent(node)
             if inside is not None and (own := _letter_in(inside, letter)):
                 return own
-            if node.kind == "product" and (own := _factor_of_sines(node, letter)):
+            is_divisor = letter == "I" and node in below  # 2*I*cos(theta) has a moment of inertia
+            if node.kind == "product" and not is_divisor and (own := _factor_of_sines(node, letter)):
                 return own
     return next((own for letter in LETTERS[:2] if (own := _evident(trees, nodes, letter))), None)
 

@@ -23,6 +23,7 @@ __all__ = [
     "is_at_open_place",
     "is_component",
     "is_place",
+    "is_usual_for_body",
     "misfits",
     "same_rotation",
 ]
@@ -65,8 +66,17 @@ def place_of(name: str) -> str:
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a derived formula may be the formula for a quantity in a context, judged by the formula's name."""
+    """Return whether a derived formula fits a quantity of the claim and the stated context.
+
+    The formula's name tells: "moment of inertia of a rod about an end" does not fit a context that states the centre.
+    """
     return not any(misfits(context, name, quantity))
+
+
+def is_usual_for_body(context: Context, sequence: str) -> bool:
+    """Return whether a sequence is stated, or is a usual one for the body: its second angle tilts the axis of a top."""
+    is_top = context.body is not None and context.body.kind.title in TOPS
+    return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
@@ -84,6 +94,8 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     if expected and frame and frame != expected:
         yield f"for the {frame} frame"
     if context.sequence and sequence and sequence not in (context.sequence, same_rotation(context.sequence)):
+        yield f"for the sequence {sequence}"
+    if sequence and not is_usual_for_body(context, sequence):
         yield f"for the sequence {sequence}"
     for body in (context.body, meaning.body if meaning else None):
         if body is not None and not body.has(name):
@@ -107,6 +119,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
         yield "for another quantity"
 
 
+TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
 """Title of a quantity -> the axes of a round body that it is about."""

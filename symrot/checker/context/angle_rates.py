@@ -11,7 +11,7 @@ from itertools import product
 from sympy import Expr, Matrix, Symbol
 
 from symrot.checker.claim.atoms import atoms_of
-from symrot.checker.context.admission import plain
+from symrot.checker.context.admission import is_usual_for_body, plain
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
 from symrot.checker.context.substitution import Substitution
@@ -45,7 +45,8 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
-    for sequence, frame in product([context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest], frames):
+    sequences = [context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest]
+    for sequence, frame in product([name for name in sequences if is_usual_for_body(context, name)], frames):
         for order in orders(context, letters, sequence):
             if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):
                 continue

@@ -25,6 +25,8 @@ MOST_UNDEFINED = 3
 """The most of these points at which a formula is tried; one without a value there has none where letters are equal."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
+MOST_CANCELLED = 12
+"""The most atoms of a formula whose fractions are cancelled, which takes seconds for the inverse of a tensor."""
 LARGEST_MULTIPLE = 400
 """The largest multiple of such a quarter, and the largest exponent, that is evaluated."""
 
@@ -185,6 +187,8 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         except NotInField:
             continue
         return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+    if len(written) > MOST_CANCELLED:
+        raise NotInField
     cancelled = [cancel(entry) for entry in entries]
     if cancelled != list(entries):
         return fingerprint(cancelled)
@@ -193,9 +197,10 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula of the usual kind; None for any other formula.
+    """Return the fingerprint of a formula from its values where all atoms but one are equal.
 
-    A formula of the usual kind has a value where all atoms are equal, and changes if any single atom changes.
+    ``entries`` are the entries of the formula, ``written`` its atoms. The result is None if the formula has no value at
+    one of these points, as ``1/(x - y)``, or does not depend on one of its atoms.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)

@@ -87,7 +87,10 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 
 
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return the letters on which the value of a formula depends; a trace depends on three entries of its matrix."""
+    """Return those letters of a formula whose change changes its value, with their values.
+
+    A formula may contain letters that do not matter: the trace of a matrix depends on its diagonal only.
+    """
     if len(atoms) < MANY:
         return atoms
     here = values_of(formula, places[:1])

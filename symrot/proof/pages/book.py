@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from html import unescape
 
-from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages.html import document, html_document, prose
 from symrot.proof.pages.math_font import FILE, face
 
@@ -140,6 +140,9 @@ def _words(page: Page) -> Iterator[tuple[str, str, str]]:
         elif isinstance(item, Step):
             number += 1
             yield f"#step-{number}", f"{heading}, step {number}", f"{item.claim} Why: {item.reason}."
+        elif isinstance(item, Table):
+            yield f"#step-{number + 1}" if item.steps else "", f"{heading}, table", item.text
+            number += len(item.steps)
         elif isinstance(item, Figure):
             yield "", f"{heading}, figure", f"{item.title}. {item.caption}"
         elif isinstance(item, Passage):

@@ -7,7 +7,7 @@ from symrot.exact import normal_form
 from symrot.exact.rewriting_chain import Chain, Link, chains
 from symrot.proof.notation.mathml import rows
 from symrot.proof.notation.printer import formula
-from symrot.proof.page import Page, Passage, Section, Step
+from symrot.proof.page import Page, Passage, Section, Step, Table
 from symrot.proof.pages.parts import passage_equations
 
 __all__ = ["excerpt"]
@@ -42,7 +42,11 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
         raise InputError(f"{whole.name}: expected the number of a step from 1 to {count}, got {number}")
     step = whole.steps[number - 1]
     page = Page(whole.name, f"{whole.title}: step {number}", whole.source, first=number, file=whole.file)
-    place = next(n for n, item in enumerate(whole.items) if item is step)
+    place = next(
+        n
+        for n, item in enumerate(whole.items)
+        if any(each is step for each in (item.steps if isinstance(item, Table) else (item,)))
+    )
     headings = [item for item in whole.items[:place] if isinstance(item, Section)]
     page.items += [*headings[-1:], step]
     if detail:

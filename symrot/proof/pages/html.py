@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from symrot.proof.notation.mathml import mathml
-from symrot.proof.page import Figure, Page, Passage, Section, Step
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages.math_font import face
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, table_rows, units
 
 __all__ = ["display", "document", "html_document", "prose"]
 
@@ -35,6 +35,11 @@ mover > mo { padding-bottom: 0.12em; }
 figure { margin: 1.6rem 0; text-align: center; break-inside: avoid; }
 figure svg { max-width: 100%; height: auto; }
 figcaption { font-size: 0.95rem; text-align: left; margin-top: 0.4rem; }
+.table { overflow-x: auto; font-size: 0.9rem; width: min(100vw - 2rem, 60rem); position: relative; left: 50%;
+  transform: translateX(-50%); }
+table { border-collapse: collapse; margin: 0 auto; }
+td:first-child { white-space: nowrap; }
+th, td { text-align: left; padding: 0.3rem 0.6rem; border-bottom: 1px solid #8886; }
 .whole { white-space: nowrap; }
 code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
@@ -70,6 +75,9 @@ def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", 
             )
         elif isinstance(item, Figure):
             parts.append(_figure(item))
+        elif isinstance(item, Table):
+            parts += [f"<p>{prose(item.text)}</p>", _table(item, number)]
+            number += len(item.steps)
         else:
             parts += _passage(item)
     used = units(page)
@@ -88,6 +96,17 @@ def _remarks(step: Step, is_repetition: bool) -> str:
 
 def _figure(figure: Figure) -> str:
     return f"<figure>{figure.svg()}<figcaption>{prose(figure.caption)}</figcaption></figure>"
+
+
+def _table(table: Table, number: int) -> str:
+    """Return a table in HTML; the row that proves step N can be linked to as ``#step-N`` of its first step."""
+    head, *rows = table_rows(table, number)
+    lines = [f"<tr>{''.join(f'<th>{prose(cell)}</th>' for cell in head)}</tr>"]
+    for cells, (_, steps) in zip(rows, table.rows, strict=True):
+        anchor = f' id="step-{number + 1}"' if steps else ""
+        number += len(steps)
+        lines.append(f"<tr{anchor}>{''.join(f'<td>{prose(cell)}</td>' for cell in cells)}</tr>")
+    return '<div class="table"><table>\n' + "\n".join(lines) + "\n</table></div>"
 
 
 def _passage(passage: Passage) -> list[str]:

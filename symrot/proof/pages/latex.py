@@ -3,8 +3,8 @@
 import re
 
 from symrot.proof.notation.mathml import rows
-from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, table_rows, units
 
 __all__ = ["latex_document"]
 
@@ -13,7 +13,9 @@ WIDTH = 62  # letters per line of a displayed formula
 LATEX_HEAD = r"""\documentclass[a4paper]{article}
 \usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{amsmath}
+\usepackage{booktabs,longtable}
 \usepackage{graphicx}
 \usepackage[margin=20mm]{geometry}
 \setcounter{MaxMatrixCols}{12}
@@ -46,6 +48,9 @@ def latex_document(page: Page) -> str:
             )  # fmt: skip
         elif isinstance(item, Figure):
             parts.append(_figure(item))
+        elif isinstance(item, Table):
+            parts += [_prose(item.text), _table(item, number)]
+            number += len(item.steps)
         else:
             parts.append(_passage(item))
     used = units(page)
@@ -63,6 +68,17 @@ def _figure(figure: Figure) -> str:
     path = figure.file.removesuffix(".svg")
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
+
+
+def _table(table: Table, number: int) -> str:
+    """Return a table in LaTeX, which may go over several pages."""
+    head, *rows = (" & ".join(map(_prose, cells)) + r" \\" for cells in table_rows(table, number))
+    columns = "l" * (head.count(" & ") + 1)
+    body = "\n\\addlinespace\n".join(rows)
+    return (
+        "{\\footnotesize\\setlength{\\tabcolsep}{3pt}\\setlength{\\arraycolsep}{2pt}\n"
+        f"\\begin{{longtable}}{{{columns}}}\n{head}\n\\midrule\n\\endhead\n{body}\n\\end{{longtable}}}}"
+    )
 
 
 def _passage(passage: Passage) -> str:

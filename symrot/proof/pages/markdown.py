@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from symrot.proof.page import Figure, Page, Passage, Section, Step
-from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, units
+from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, table_rows, units
 
 __all__ = ["display", "host_safe", "inline", "markdown"]
 
@@ -31,6 +31,9 @@ def markdown(page: Page) -> str:
             parts += filter(None, [" ".join(remarks(item, number in repeats))])
         elif isinstance(item, Figure):
             parts += _figure(item)
+        elif isinstance(item, Table):
+            parts += [item.text, _table(item, number)]
+            number += len(item.steps)
         else:
             parts += _passage(item)
     symbols_used = units(page)
@@ -44,6 +47,12 @@ def markdown(page: Page) -> str:
 
 def _figure(figure: Figure) -> list[str]:
     return [f"![{figure.title}]({figure.file})", f"*Figure:* {figure.caption}"]
+
+
+def _table(table: Table, number: int) -> str:
+    head, *rows = (f"| {' | '.join(cells)} |" for cells in table_rows(table, number))
+    rule = "|" + " --- |" * head.count(" | ") + " --- |"
+    return "\n".join([head, rule, *rows])
 
 
 def _passage(passage: Passage) -> list[str]:

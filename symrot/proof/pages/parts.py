@@ -7,10 +7,10 @@ from typing import Any
 from sympy import Add, Expr
 
 from symrot.proof.notation.printer import formula
-from symrot.proof.page import Page, Passage, Step
+from symrot.proof.page import Page, Passage, Step, Table
 from symrot.symbols import UNIT
 
-__all__ = ["equation", "footer", "passage_equations", "remarks", "repetitions", "units"]
+__all__ = ["equation", "footer", "passage_equations", "remarks", "repetitions", "table_rows", "units"]
 
 MANY = 6
 """So many steps with one claim and one reason prove one result for many cases."""
@@ -74,6 +74,19 @@ def units(page: Page) -> str:
             groups.setdefault(unit, []).append(f"${formula(symbol)}$")
     phrases = ((", ".join(names), "without unit" if unit == "1" else f"in {unit}") for unit, names in groups.items())
     return "; ".join(f"{names} {unit}" for names, unit in phrases)
+
+
+def table_rows(table: Table, number: int) -> Iterator[tuple[str, ...]]:
+    """Yield the head of a table and its rows, Markdown; ``number`` is the number of the step before the table.
+
+    If steps prove the rows, the first column has their numbers.
+    """
+    yield ("Steps", *table.head) if table.is_proven else table.head
+    for cells, steps in table.rows:
+        first, last = number + 1, number + len(steps)
+        number = last
+        numbers = f"{first}" if first == last else f"{first}–{last}"
+        yield (numbers, *cells) if table.is_proven else cells
 
 
 def footer(page: Page) -> str:

@@ -562,7 +562,10 @@ class SwitchedRun(RunState):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set a switching function that begins to affect the motion to the value that its argument has now."""
+        """Compute a switching function such as sign(x) again, as the branch of ``where`` that contains it is used now.
+
+        While the branch was unused, nobody watched whether x changed its sign.
+        """
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):

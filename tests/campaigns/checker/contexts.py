@@ -211,7 +211,9 @@ def tops(draw: random.Random) -> Iterator[Case]:
         left, _, right = source.partition(" = ")
         for body in ("", "heavy symmetric top"):
             for side in (right, _faulty(right, draw), _faulty(right, draw)):
-                yield Case(f"{left} = {side}", {"body": body}, _holds((left, side), names, point))
+                is_correct = _holds((left, side), names, point)
+                is_of_cardan_angles = side == "psi' + phi'*sin(theta)"  # right for XYZ, if nothing says it is a top
+                yield Case(f"{left} = {side}", {"body": body}, is_correct or (is_of_cardan_angles and not body))
 
 
 def products() -> Iterator[Case]:

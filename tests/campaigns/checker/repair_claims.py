@@ -20,7 +20,7 @@ from symrot.exact.printing import as_text
 from symrot.kinematics.euler import rate_jacobian
 from symrot.proof.derivation import Step
 
-__all__ = ["STATEMENTS", "catalogue_claims", "claims_of_statements", "claims_of_steps"]
+__all__ = ["STATEMENTS", "catalogue_claims", "claims_of_statements", "claims_of_step", "claims_of_steps"]
 
 Q, P = "(q0, q1, q2, q3)", "(p0, p1, p2, p3)"
 N, V, R, D = "Matrix([n1, n2, n3])", "Matrix([v_x, v_y, v_z])", "Matrix([x, y, z])", "Matrix([d_x, d_y, d_z])"
@@ -172,11 +172,12 @@ def claims_of_steps() -> Iterator[tuple[str, Claim]]:
     for name in names():
         for number, step in enumerate(derivation(name).steps, start=1):
             if step.relation == "=":
-                for claim in _of_step(step, f"{name}-{number}"):
+                for claim in claims_of_step(step, f"{name}-{number}"):
                     yield name, claim
 
 
-def _of_step(step: Step, label: str) -> list[Claim]:
+def claims_of_step(step: Step, label: str) -> list[Claim]:
+    """Return the equation of a step as a claim, or its entries, or nothing if the reader does not accept it."""
     whole = _claim(step.left, step.right, step.hypotheses, label)
     if whole is not None or not isinstance(step.left, MatrixBase):
         return [] if whole is None else [whole]
@@ -189,11 +190,11 @@ def _claim(left: Any, right: Any, hypotheses: Sequence[Any], label: str) -> Clai
     """Return an equation as a claim, or None if the reader does not accept it."""
     source = f"{as_text(left)} == {as_text(right)}"
     symbols = sorted(set().union(*(side.free_symbols for side in (left, right, *hypotheses))), key=str)
-    signs: list[Relation] = [read_relation(f"{symbol} > 0") for symbol in symbols if symbol.is_positive]
-    zeros = [read_relation(f"{as_text(formula)} == 0") for formula in hypotheses]
     try:
+        signs: list[Relation] = [read_relation(f"{symbol} > 0") for symbol in symbols if symbol.is_positive]
+        zeros = [read_relation(f"{as_text(formula)} == 0") for formula in hypotheses]
         relation = read_relation(source)
-    except InputError:
+    except InputError:  # the coefficients of a series have names such as a_{k-2}
         return None
     return Claim(
         id=label, symbols=tuple(map(str, symbols)), hypotheses=(*zeros, *signs), relation=relation,

@@ -146,3 +146,11 @@ def test_moments_may_be_written_with_other_dimensions(text, verdict, context):
 def test_guessed_dimensions_are_named():
     notes = symrot.check("I_zz = m (a² + b²)/20", body="ellipsoid").notes
     assert "guessed, not stated: a, b and c are the whole axes" in notes
+
+
+def test_the_angles_of_a_top_are_those_of_its_usual_sequences():
+    """The formula is right for XYZ, which a top needs only if somebody says so."""
+    claim = "omega_3 = psi' + phi'*sin(theta)"
+    assert symrot.check(claim, **TOP, repair=False).verdict not in ("true", "recognised")
+    assert symrot.check(claim, **TOP, sequence="XYZ", repair=False).verdict == "recognised"
+    assert symrot.check("omega_3 = psi' + phi'*cos(theta)", **TOP, repair=False).verdict in ("true", "recognised")

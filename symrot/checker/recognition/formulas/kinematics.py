@@ -117,6 +117,7 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
     yield "a unit quaternion", Matrix(quaternion.quaternion_to_dcm(Q))
     homogeneous = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
     yield "a unit quaternion, q v q*", homogeneous
+    yield "a quaternion of any length, q v q^-1", Matrix(quaternion.quaternion_to_dcm(Q, "normalised"))
     by_scalar = (homogeneous + quaternion.unit_relation(Q) * eye(3)).applyfunc(expand)
     yield "a unit quaternion by its scalar and vector parts", by_scalar
 

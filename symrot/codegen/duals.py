@@ -1,0 +1,118 @@
+"""Dual numbers: a value with its derivatives, of any kind of number below.
+
+A computation that is written once for any kind of number, evaluated with dual numbers, also gives the derivatives of
+its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., section 3.1.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from symrot.errors import InputError
+
+__all__ = ["Dual", "dual_functions"]
+
+
+class Dual:
+    """A number and its derivatives, by the names of the variables; a variable that is absent has the derivative 0."""
+
+    def __init__(self, value: Any, slopes: Mapping[str, Any]) -> None:
+        self.value, self.slopes = value, slopes
+
+    def _with(self, value: Any, factor: Any) -> "Dual":
+        """Return a number whose derivatives are ``factor`` times the derivatives of this one."""
+        return Dual(value, {name: factor * slope for name, slope in self.slopes.items()})
+
+    def __add__(self, other: Any) -> "Dual":
+        if not isinstance(other, Dual):
+            return Dual(self.value + other, self.slopes)
+        slopes = dict(self.slopes)
+        for name, slope in other.slopes.items():
+            slopes[name] = slopes[name] + slope if name in slopes else slope
+        return Dual(self.value + other.value, slopes)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> "Dual":
+        return Dual(-self.value, {name: -slope for name, slope in self.slopes.items()})
+
+    def __sub__(self, other: Any) -> "Dual":
+        if not isinstance(other, Dual):
+            return Dual(self.value - other, self.slopes)
+        slopes = dict(self.slopes)
+        for name, slope in other.slopes.items():
+            slopes[name] = slopes[name] - slope if name in slopes else -slope
+        return Dual(self.value - other.value, slopes)
+
+    def __rsub__(self, other: Any) -> "Dual":
+        return -self + other
+
+    def __mul__(self, other: Any) -> "Dual":
+        if not isinstance(other, Dual):
+            return self._with(self.value * other, other)
+        return self._with(self.value * other.value, other.value) + other._with(0, self.value)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "Dual":
+        if not isinstance(other, Dual):
+            return Dual(self.value / other, {name: slope / other for name, slope in self.slopes.items()})
+        value = self.value / other.value
+        above = self + other._with(0, -value)
+        return Dual(value, {name: slope / other.value for name, slope in above.slopes.items()})
+
+    def __rtruediv__(self, other: Any) -> "Dual":
+        return Dual(other, {}) / self
+
+    def __pow__(self, exponent: int) -> "Dual":
+        if exponent < 0:
+            return 1 / self**-exponent
+        result = self
+        for bit in format(exponent, "b")[1:]:
+            result = result * result
+            result = result * self if bit == "1" else result
+        return result
+
+
+def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+    """Return the functions of formulas for dual numbers, made from the functions for the numbers below.
+
+    Raises
+    ------
+    InputError
+        When abs is called: it has no derivative at zero.
+    """
+    f = functions
+    rules: dict[str, Callable[[Any, Any], Any]] = {  # derivative at x of the function with the value y
+        "sqrt": lambda x, y: 1 / (2 * y),
+        "sin": lambda x, y: f["cos"](x),
+        "cos": lambda x, y: -f["sin"](x),
+        "tan": lambda x, y: 1 + y * y,
+        "exp": lambda x, y: y,
+        "log": lambda x, y: 1 / x,
+        "sinh": lambda x, y: f["cosh"](x),
+        "cosh": lambda x, y: f["sinh"](x),
+        "tanh": lambda x, y: 1 - y * y,
+        "asin": lambda x, y: 1 / f["sqrt"](1 - x * x),
+        "acos": lambda x, y: -1 / f["sqrt"](1 - x * x),
+        "atan": lambda x, y: 1 / (1 + x * x),
+    }
+
+    def of(name: str) -> Callable[[Any], Any]:
+        def function(argument: Any) -> Any:
+            if not isinstance(argument, Dual):
+                return f[name](argument)
+            value = f[name](argument.value)
+            return argument._with(value, rules[name](argument.value, value)) if argument.slopes else Dual(value, {})
+
+        return function
+
+    def atan2(y: Any, x: Any) -> Dual:
+        top, right = (each if isinstance(each, Dual) else Dual(each, {}) for each in (y, x))
+        size = right.value * right.value + top.value * top.value
+        slopes = (right.value / size * top + (-top.value / size) * right).slopes
+        return Dual(f["atan2"](top.value, right.value), slopes)
+
+    def absolute(argument: Any) -> Any:
+        raise InputError("expected formulas with derivatives, got abs, which has none at zero")
+
+    return {**{name: of(name) for name in rules}, "atan2": atan2, "abs": absolute}

@@ -1,0 +1,119 @@
+"""Straight-line programs as records of computations: a number that records its operations, and its record.
+
+A method is written once for any kind of number. Evaluated with numbers of this kind, it leaves a record, which becomes
+a program of the same operations.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from symrot.codegen.lowering.tape import Operation
+from symrot.codegen.lowering.temporary_names import with_names
+from symrot.formula.program import Program, Signature
+from symrot.formula.tree import Node
+
+__all__ = ["Recorded", "Recorder", "is_exactly"]
+
+ANONYMOUS = "#"  # first letter of temporaries that get their names later
+
+
+class Recorder:
+    """A record of operations, in which equal operations occur once and operations with constants are folded."""
+
+    def __init__(self) -> None:
+        self.known: dict[Operation, int] = {}
+
+    def add(self, kind: str, *operands: int, value: Any = None) -> "Recorded":
+        return Recorded(self, self.known.setdefault(Operation(kind, operands, value), len(self.known)))
+
+    def symbol(self, name: str) -> "Recorded":
+        return self.add("symbol", value=name)
+
+    def constant(self, value: Fraction) -> Fraction:
+        return value
+
+    def index(self, value: Any) -> int:
+        return value.index if isinstance(value, Recorded) else self.add("number", value=Fraction(value)).index
+
+    def function(self, name: str) -> Callable[..., "Recorded"]:
+        return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
+
+    def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
+        """Return the program of the recorded operations that the outputs need; a result used once is not named."""
+        roots = {name: self.index(value) for name, value in outputs.items()}
+        operations = list(self.known)
+        uses = Counter(roots.values())
+        needed = set(roots.values())
+        for index in range(len(operations) - 1, -1, -1):
+            if index in needed:
+                uses.update(operations[index].operands)
+                needed.update(operations[index].operands)
+        nodes: dict[int, Node] = {}
+        temporaries: list[tuple[str, Node]] = []
+        for index in sorted(needed):
+            kind, operands, value = operations[index]
+            if kind in ("number", "symbol"):
+                nodes[index] = (kind, value)
+                continue
+            parts = tuple(nodes[i] for i in operands)
+            node: Node = ("call", kind.removeprefix("call "), parts) if kind.startswith("call ") else (kind, *parts)
+            if uses[index] > 1 or node[0] == "call":
+                temporaries.append((f"{ANONYMOUS}{index}", node))
+                node = ("symbol", f"{ANONYMOUS}{index}")
+            nodes[index] = node
+        program = Program(signature, tuple(temporaries), tuple((name, nodes[i]) for name, i in roots.items()))
+        return with_names(program, [name for name, _ in temporaries], {})
+
+
+class Recorded:
+    """A number that records the operations in which it occurs."""
+
+    def __init__(self, recorder: Recorder, index: int) -> None:
+        self.recorder, self.index = recorder, index
+
+    def _operation(self, kind: str, left: Any, right: Any) -> "Recorded":
+        return self.recorder.add(kind, self.recorder.index(left), self.recorder.index(right))
+
+    def __add__(self, other: Any) -> "Recorded":
+        return self if is_exactly(other, 0) else self._operation("+", self, other)
+
+    def __radd__(self, other: Any) -> "Recorded":
+        return self if is_exactly(other, 0) else self._operation("+", other, self)
+
+    def __sub__(self, other: Any) -> "Recorded":
+        return self if is_exactly(other, 0) else self._operation("-", self, other)
+
+    def __rsub__(self, other: Any) -> "Recorded":
+        return -self if is_exactly(other, 0) else self._operation("-", other, self)
+
+    def __mul__(self, other: Any) -> Any:
+        if isinstance(other, Recorded):
+            return self._operation("*", self, other)
+        return 0 if other == 0 else self if other == 1 else -self if other == -1 else self._operation("*", other, self)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._operation("/", self, other) if isinstance(other, Recorded) else self * (1 / Fraction(other))
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return 0 if is_exactly(other, 0) else self._operation("/", other, self)
+
+    def __neg__(self) -> "Recorded":
+        return self.recorder.add("neg", self.index)
+
+    def __pow__(self, exponent: int) -> Any:
+        if exponent < 0:
+            return 1 / self**-exponent
+        result: Any = self
+        for bit in format(exponent, "b")[1:]:
+            result = result * result
+            result = result * self if bit == "1" else result
+        return result
+
+
+def is_exactly(value: Any, number: int) -> bool:
+    """Return whether a value is an exact number, not a recorded one, and equal to ``number``."""
+    return not isinstance(value, Recorded) and bool(value == number)

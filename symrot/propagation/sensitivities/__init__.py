@@ -1,0 +1,1 @@
+"""Derivatives of a motion by its initial values and by the constants of its scene."""

@@ -1,0 +1,192 @@
+"""The variables of sensitivities: initial values and constants of a scene, and how the scene depends on them.
+
+The kernels of a scene contain constants such as moments of inertia, which follow from the numbers in the scene (masses,
+dimensions, products of them). All these numbers are exact, so that the derivative of a constant is the difference
+quotient over a step of 2^-80 of the variable: its error is below 2^-70. A second quotient, over twice the step,
+confirms it.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from symrot.dynamics.torque_kinds import TORQUE_KINDS
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import read, show
+from symrot.scene.changes import path_of
+from symrot.scene.scene import Scene
+
+__all__ = ["ATTITUDE", "Variable", "difference", "read_variables"]
+
+ATTITUDE = "attitude"
+MOST_VARIABLES = 100
+RATES = ("omega", "omega_1", "omega_2", "omega_3")
+TENSOR = ("principal", "I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
+NO_VARIABLES = ("t", "samples", "tolerance", "quantities", "sequence", "degrees")
+NO_TABLES = ("schema", "title", "source", "span", "output", "accuracy")
+STEP = Fraction(1, 1 << 80)
+AGREEMENT = Fraction(1, 1 << 60)
+UNITS = {**dict.fromkeys(RATES, "rad/s"), **dict.fromkeys(TENSOR, "kg m^2"), "mass": "kg", "density": "kg/m^3"}
+LENGTHS = ("radius", "length", "a", "b", "c", "height", "width", "depth", "thickness", "inner_radius", "outer_radius")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of the derivatives: an initial value or a constant.
+
+    Attributes
+    ----------
+    key, name, unit : str
+        The requested name, the name of this component, and its SI unit; empty if no table states one.
+    value : Fraction
+        Its present value.
+    moved : function
+        Takes a change of the variable and returns the changed scene; None for a small rotation of the initial attitude.
+    axis : int
+        For a rotation of the initial attitude: the body axis, 0 to 2.
+    """
+
+    key: str
+    name: str
+    unit: str
+    value: Fraction
+    moved: Callable[[Fraction], Scene] | None
+    axis: int = 0
+
+
+def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
+    """Return the variables that the keys of a request name.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    keys : sequence of str
+        ``"omega"`` (three components, rad/s), ``"attitude"`` (a small rotation about each body axis, rad), or a key of
+        :meth:`symrot.Scene.with_` that names a number or a vector, such as ``"weight"`` or ``"body.mass"``.
+
+    Raises
+    ------
+    InputError
+        If a key names no initial value or constant, or is named twice.
+    """
+    if isinstance(keys, str) or not isinstance(keys, Sequence) or not all(isinstance(key, str) for key in keys):
+        raise InputError(f'sensitivities: expected a list of names such as ["omega", "weight"], got {show(keys)}')
+    if not keys:
+        raise InputError('sensitivities: expected at least one name, such as "omega" or "weight", got none')
+    variables = [variable for key in keys for variable in _variables(scene, key)]
+    names = [variable.name for variable in variables]
+    double = next((name for name in names if names.count(name) > 1), None)
+    if double is not None:
+        raise InputError(f"sensitivities: expected each variable once, got {double} twice")
+    if len(names) > MOST_VARIABLES:
+        raise InputError(f"sensitivities: expected at most {MOST_VARIABLES} variables, got {len(names)}")
+    return variables
+
+
+def _variables(scene: Scene, key: str) -> Iterator[Variable]:
+    if key == ATTITUDE:
+        yield from (Variable(key, f"{key}_{i + 1}", "rad", Fraction(0), None, i) for i in range(3))
+        return
+    if key == "quaternion":
+        raise InputError(
+            "sensitivities: expected 'attitude', a small rotation about each body axis, got 'quaternion', whose "
+            "components cannot change independently"
+        )
+    if key in NO_VARIABLES or (path_of(key) or ("",))[0] in NO_TABLES:
+        raise InputError(f"sensitivities: expected an initial value or a constant of the scene, got {key!r}")
+    try:
+        value = scene.value(key)
+    except InputError as reason:
+        raise InputError(f"sensitivities: {reason}") from None
+    unit = _unit(scene, key)
+    if not isinstance(value, list | tuple):
+        number = _number(key, value)
+        yield Variable(key, key, unit, number, lambda change: scene.with_({key: number + change}))
+        return
+    vector = [_number(key, each) for each in value]
+
+    def moved(place: int) -> Callable[[Fraction], Scene]:
+        return lambda change: scene.with_(
+            {key: [each + change * (number == place) for number, each in enumerate(vector)]}
+        )
+
+    for place, number in enumerate(vector):
+        yield Variable(key, f"{key}_{place + 1}", unit, number, moved(place))
+
+
+def _number(key: str, value: Any) -> Fraction:
+    try:
+        return read(value)
+    except InputError:
+        raise InputError(f"sensitivities: expected a number or a vector, but {key} is {show(value)}") from None
+
+
+def _unit(scene: Scene, key: str) -> str:
+    """Return the SI unit of a key, or an empty text."""
+    last = key.rpartition(".")[2]
+    if last in UNITS:
+        return UNITS[last]
+    stem = last.removesuffix("_1").removesuffix("_2").removesuffix("_3")
+    for torque in scene.torques:
+        kind = TORQUE_KINDS.get(torque.kind)
+        for field in kind.fields if kind else ():
+            if last == field.name or stem == field.name or last.partition("_")[2] == field.name:
+                return field.unit
+    return "m" if last in LENGTHS else ""
+
+
+Numbers = Mapping[str, Fraction]
+
+
+def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
+    """Return the derivatives by a variable of numbers that follow from a scene; those that are zero are left out.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    variable : Variable
+        A variable that is not a rotation of the initial attitude.
+    numbers : function
+        Takes a scene and returns exact numbers by name.
+
+    Raises
+    ------
+    InputError
+        If the scene is not valid on either side of the variable's value, or if a number is not smooth there.
+    """
+    step = abs(variable.value) * STEP if variable.value else STEP
+    first, second = (_quotient(scene, variable, numbers, size) for size in (step, 2 * step))
+    for name, slope in first.items():
+        if abs(slope - second[name]) > AGREEMENT * max(abs(slope), abs(second[name])):
+            raise InputError(
+                f"sensitivities: {name} of the equations does not depend smoothly on {variable.name} at its value"
+            )
+    return {name: slope for name, slope in first.items() if slope}
+
+
+def _quotient(
+    scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers], step: Fraction
+) -> dict[str, Fraction]:
+    """Return difference quotients of second order: central ones, or one-sided ones at the end of the valid values."""
+    assert variable.moved is not None
+    schemes: tuple[dict[int, Fraction], ...] = (
+        {-1: Fraction(-1, 2), 1: Fraction(1, 2)},
+        {0: Fraction(-3, 2), 1: Fraction(2), 2: Fraction(-1, 2)},
+        {0: Fraction(3, 2), -1: Fraction(-2), -2: Fraction(1, 2)},
+    )
+    refusal: InputError | None = None
+    for weights in schemes:
+        try:
+            values = {place: numbers(variable.moved(place * step) if place else scene) for place in weights}
+        except InputError as reason:
+            refusal = refusal or reason
+            continue
+        names = next(iter(values.values()))
+        return {
+            name: sum((weight * values[place][name] for place, weight in weights.items()), Fraction(0)) / step
+            for name in names
+        }
+    raise InputError(f"sensitivities: expected a scene that stays valid if {variable.name} changes, got {refusal}")

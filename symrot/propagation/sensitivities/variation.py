@@ -1,0 +1,289 @@
+"""The derivatives of a motion by initial values and constants: variational equations, by Taylor series.
+
+The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
+with one control of the steps. Its equations assume nothing about the numbers of the scene that a variable can change:
+a derivative by a moment of inertia needs the equations of a body without symmetry. A column of derivatives is
+integrated in multiples of a power of two, so that its size is near that of the motion.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from math import frexp, ldexp
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.build import cache as library
+from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
+from symrot.errors import InputError, PropagationError
+from symrot.formula import exact_numbers as number
+from symrot.formula.program import Program, node_from_json, node_to_json
+from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure, switched
+from symrot.planning.plan import Plan
+from symrot.planning.rules import UNIT_FIELDS, pattern
+from symrot.planning.scene_kernel import Parameters
+from symrot.propagation.binding import value_of
+from symrot.propagation.compiled_models import has_formulas, kernel_key
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
+from symrot.propagation.steppers import taylor
+from symrot.results.sensitivity import Sensitivities
+from symrot.scene.scene import Scene
+from symrot.scene.tables import Initial
+
+__all__ = ["transition_matrix", "variation"]
+
+Floats = NDArray[np.float64]
+STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
+RATES = 3  # the first states are angular velocities
+ORDER = 20
+AT_ONCE = 6  # columns in one library: many more would take a compiler too long
+TOLERANCE = 1e-16
+SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
+TRIES = 4
+TRANSITION = ("omega", "attitude")
+
+
+def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
+    """Return the derivatives of a scene's motion at sample times.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene with the initial state of the motion.
+    keys : sequence of str
+        The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
+    times : array, shape (n,)
+        Sample times, s.
+
+    Raises
+    ------
+    InputError
+        If the scene has torques that switch or a table of samples, or if a key names no variable.
+    PropagationError
+        If the motion cannot be followed to the last time.
+    """
+    _refuse(scene)
+    variables = read_variables(scene, keys)
+    columns = _columns(scene, variables)
+    values, slopes = _follow(scene, columns, times)
+    q = values[:, RATES:]
+    groups: dict[str, tuple[int, ...]] = {}
+    for place, variable in enumerate(variables):
+        groups[variable.key] = (*groups.get(variable.key, ()), place)
+    quaternion = slopes[:, RATES:]
+    return Sensitivities(
+        tuple(variable.name for variable in variables),
+        tuple(variable.unit for variable in variables),
+        groups,
+        slopes[:, :RATES],
+        quaternion,
+        _rotation(q, quaternion),
+    )
+
+
+def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
+    """Return the state transition matrix of a scene's motion from one time to another, shape (6, 6).
+
+    It maps a small change of (omega_1, omega_2, omega_3, rotation_1, rotation_2, rotation_3) at ``start``, s, to the
+    change at ``stop``; the rotation is about the body axes.
+    """
+    _refuse(scene)
+    columns = _columns(scene, read_variables(scene, TRANSITION))
+    if start != float(scene.span.start):
+        values, _ = _follow(scene, columns, np.array([start]))
+        omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
+        exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
+        initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
+        scene = replace(scene, initial=initial)
+        columns = _columns(scene, read_variables(scene, TRANSITION))
+    values, slopes = _follow(scene, columns, np.array([stop]), start)
+    return np.concatenate([slopes[0, :RATES], _rotation(values[:, RATES:], slopes[:, RATES:])[0]])
+
+
+def _refuse(scene: Scene) -> None:
+    if scene.table is not None:
+        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+    if switched(scene):
+        raise InputError(
+            f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "
+            "at which the derivatives of a motion jump"
+        )
+
+
+# ------------------------------------------------------------------------------------------------ columns
+
+
+class _Column:
+    """The dependence of a scene on one variable: derivatives of the initial state and of the constants."""
+
+    def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
+        self.variable = variable
+        self.constants: Mapping[str, Fraction] = {}
+        if variable.moved is None:
+            q0, *v = scene.initial.quaternion
+            unit = [Fraction(int(i == variable.axis)) for i in range(3)]
+            cross = [v[i - 2] * unit[i - 1] - v[i - 1] * unit[i - 2] for i in range(3)]
+            slopes = [-v[variable.axis], *(q0 * unit[i] + cross[i] for i in range(3))]
+            self.start = [0.0] * RATES + [float(slope / 2) for slope in slopes]
+            return
+        every = difference(scene, variable, lambda other: {**_start(other), **constants_of(other, general)})
+        self.start = [float(every.pop(name, 0)) for name in map(_initial, STATES)]
+        self.constants = every
+
+
+def _initial(state: str) -> str:
+    return f"initial {state}"
+
+
+def _start(scene: Scene) -> dict[str, Fraction]:
+    """Return the initial state, by names that no constant has."""
+    return dict(zip(map(_initial, STATES), (*scene.initial.omega_b, *scene.initial.quaternion), strict=True))
+
+
+def _columns(scene: Scene, variables: Sequence[Variable]) -> list[_Column]:
+    general = general_structure(scene)
+    return [_Column(scene, variable, general) for variable in variables]
+
+
+def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
+    """Return the structure in which a constant is zero or one only if no variable changes it."""
+    moving = {name for column in columns for name in column.constants}
+    general, inertia = general_structure(scene), scene.body.inertia
+    nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
+    entries = tuple(name for name in general.inertia.entries if name not in PRODUCTS or name in nonzero)  # type: ignore[union-attr]
+    torques: list[FieldTorque | FormulaTorque] = []
+    for torque, own in zip(general.torques, scene.torques, strict=True):
+        if isinstance(torque, FormulaTorque):
+            torques.append(torque)
+            continue
+        fields = []
+        for name, field in torque.fields:
+            if isinstance(field, tuple):
+                first = 0 if len(field) == 4 else 1
+                names = [f"{torque.prefix}{name}_{place}" for place, _ in enumerate(field, start=first)]
+                field = tuple(
+                    Pattern.FREE if each in moving else pattern(value, unit=name in UNIT_FIELDS)
+                    for each, value in zip(names, own.vector(name), strict=True)
+                )
+            fields.append((name, field))
+        torques.append(torque._replace(fields=tuple(fields)))
+    tensor = InertiaTensor(entries) if nonzero else PrincipalInertia()
+    return replace(general, inertia=tensor, torques=tuple(torques))
+
+
+# ------------------------------------------------------------------------------------------------ libraries
+
+
+def _rates(plan: Plan) -> tuple[Program, Parameters]:
+    """Return the rates of a structure and their parameters, from the cache or newly derived."""
+    key = f"rates alone\n{kernel_key(plan)}"
+    saved = library.fetch(key)
+    if saved is None:
+        from symrot.codegen.scene_kernels import rates_program
+        from symrot.dynamics.equations import equations_of_motion
+
+        derived = rates_program(equations_of_motion(plan.structure), "rates")
+        parameters = [(name, node_to_json(node)) for name, node in derived.parameters]
+        saved = json.dumps({"rates": derived.program.to_json(), "parameters": parameters})
+        library.store(key, saved)
+    record = json.loads(saved)
+    formulas = tuple((name, node_from_json(node)) for name, node in record["parameters"])
+    return Program.from_json(record["rates"]), formulas
+
+
+def _library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
+    """Return the compiled library of the motion and its derivatives.
+
+    ``depends`` lists, for each column, the parameters that depend on its variable.
+    """
+    key = f"variation {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
+    source = library.fetch(key)
+    if source is None:
+        from symrot.codegen.variational import variational_program
+
+        size = len(STATES)
+        edges, scales = [0], []
+        for column in range(len(depends) + 1):
+            edges += [column * size + RATES, (column + 1) * size]
+            scales += [0.0, 1.0]
+        try:
+            program = variational_program(rates, depends)
+            source = taylor.translation_unit(program, edges, scales, ORDER, "", has_formulas(plan))
+        except InputError as reason:
+            raise InputError(f"{plan.scene.name}: sensitivities: {reason}") from None
+        library.store(key, source)
+    return library.build(source, "taylor", taylor.FLAGS)
+
+
+# ------------------------------------------------------------------------------------------------ motions
+
+
+def _follow(
+    scene: Scene, columns: Sequence[_Column], times: Floats, begin: float | None = None
+) -> tuple[Floats, Floats]:
+    """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
+
+    ``begin`` is the time, s, of the scene's initial state; default: the start of its span.
+    """
+    begin = float(scene.span.start) if begin is None else begin
+    values, slopes = [], []
+    for first in range(0, len(columns), AT_ONCE):
+        states, derivatives = _follow_some(scene, columns[first : first + AT_ONCE], times, begin)
+        values.append(states)
+        slopes.append(derivatives)
+    return values[0], np.concatenate(slopes, axis=2)
+
+
+def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin: float) -> tuple[Floats, Floats]:
+    structure = _structure(scene, columns)
+    plan = Plan(scene, structure, ())
+    rates, parameters = _rates(plan)
+
+    def numbers(other: Scene) -> dict[str, Fraction]:
+        constants = {"pi": number.PI, **constants_of(other, structure)}
+        return {name: value_of(node, constants) for name, node in parameters}
+
+    own = numbers(scene)
+    moved = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
+    depends = [[name for name, _ in parameters if name in slopes] for slopes in moved]
+    path = _library(plan, rates, depends)
+    sizes = [_size(scene, column) for column in columns]
+    size = len(STATES)
+    start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
+    for attempt in range(TRIES):
+        state, p = list(start), [float(own[name]) for name, _ in parameters]
+        for column, scale, names, slopes in zip(columns, sizes, depends, moved, strict=True):
+            state += [scale * slope for slope in column.start]
+            p += [scale * float(slopes[name]) for name in names]
+        motion = taylor.integration(path, p, state, begin, TOLERANCE)
+        try:
+            samples, _ = motion.sample_sorted(times, False)
+        except PropagationError as error:
+            raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
+        derivatives = samples[:, size:].reshape(len(times), len(columns), size)
+        largest = np.max(np.abs(derivatives[:, :, RATES:]), axis=(0, 2), initial=0.0)
+        small = [k for k, reached in enumerate(largest.tolist()) if 0.0 < reached < SMALL]
+        if not small or attempt == TRIES - 1:
+            break
+        for k in small:
+            sizes[k] = ldexp(sizes[k], 1 - frexp(largest[k])[1])
+    scaled = derivatives / np.array(sizes)[None, :, None]
+    return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1))
+
+
+def _size(scene: Scene, column: _Column) -> float:
+    """Return the power of two in which a column is integrated at first: near the value of the variable."""
+    value = abs(float(column.variable.value))
+    if column.variable.key.startswith("omega"):
+        value = max(abs(float(rate)) for rate in scene.initial.omega_b)
+    return ldexp(1.0, frexp(value)[1]) if value and column.variable.moved is not None else 1.0
+
+
+def _rotation(q: Floats, slopes: Floats) -> Floats:
+    """Return derivatives of the attitude as small rotations about the body axes, from those of the quaternion."""
+    scalar, vector = q[:, :1, None], q[:, 1:, None]
+    along, across = slopes[:, :1], slopes[:, 1:]
+    return 2.0 * (scalar * across - vector * along - np.cross(vector, across, axis=1))

@@ -1,0 +1,133 @@
+"""Derivatives of a motion by initial values and constants, at the sample times, with labels."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.results.labels import Labelled
+from symrot.results.tables import BY
+
+__all__ = ["Sensitivities", "Sensitivity", "restored"]
+
+OUTPUTS = {  # quantity -> components, unit, frame, meaning
+    "omega": (("omega_1", "omega_2", "omega_3"), "rad/s", "body", "angular velocity, body components"),
+    "quaternion": (("q0", "q1", "q2", "q3"), "1", "body to space", "attitude"),
+    "rotation": (("rotation_1", "rotation_2", "rotation_3"), "rad", "body", "small rotation about the body axes"),
+}
+
+Floats = NDArray[np.float64]
+
+
+class Sensitivity(NamedTuple):
+    """Derivatives at n samples by one variable, or by the k components of a vector, which are then the last axis.
+
+    Attributes
+    ----------
+    omega : array, shape (n, 3) or (n, 3, k)
+        Derivative of the angular velocity, body components.
+    quaternion : array, shape (n, 4) or (n, 4, k)
+        Derivative of the attitude as a quaternion, scalar first.
+    rotation : array, shape (n, 3) or (n, 3, k)
+        Derivative of the attitude as a small rotation: components, rad, about the body axes at that time.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> motion = symrot.propagate("t_handle", t=[0, 1], sensitivities=["omega", "attitude"])
+    >>> motion.sensitivities["omega"].rotation.shape
+    (2, 3, 3)
+    """
+
+    omega: Floats
+    quaternion: Floats
+    rotation: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities(Mapping[str, Sensitivity]):
+    """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
+
+    A name of one component, such as ``omega_2``, is also accepted.
+
+    Attributes
+    ----------
+    variables : tuple of str
+        The m variables: the requested names, those of a vector with the number of the component.
+    units : tuple of str
+        Units of the variables; empty for a parameter of a formula, whose unit no scene states.
+    groups : mapping
+        Requested name -> the numbers of its variables.
+    omega, quaternion, rotation : array, shape (n, 3, m), (n, 4, m), (n, 3, m)
+        The derivatives, as in :class:`Sensitivity`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> motion = symrot.propagate("t_handle", t=[0, 1], sensitivities=["omega", "attitude"])
+    >>> motion.sensitivities.variables
+    ('omega_1', 'omega_2', 'omega_3', 'attitude_1', 'attitude_2', 'attitude_3')
+    """
+
+    variables: tuple[str, ...]
+    units: tuple[str, ...]
+    groups: Mapping[str, tuple[int, ...]]
+    omega: Floats
+    quaternion: Floats
+    rotation: Floats
+
+    def __getitem__(self, name: str) -> Sensitivity:
+        if name in self.groups:
+            places: int | list[int] = list(self.groups[name])
+            places = places[0] if len(places) == 1 else places
+        elif name in self.variables:
+            places = self.variables.index(name)
+        else:
+            raise KeyError(name)
+        return Sensitivity(self.omega[..., places], self.quaternion[..., places], self.rotation[..., places])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.groups)
+
+    def __len__(self) -> int:
+        return len(self.groups)
+
+    def __repr__(self) -> str:
+        return f"<Sensitivities by {', '.join(self.variables)}: {len(self.omega)} samples>"
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """The variables as data for JSON, which a file of samples contains: names, units and requested groups."""
+        return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
+
+    def _labelled(self) -> list[Labelled]:
+        """Return the derivatives with labels, three quantities for each variable, such as ``omega_by_weight``."""
+        items = []
+        for number, (variable, unit) in enumerate(zip(self.variables, self.units, strict=True)):
+            for quantity, (components, own, frame, meaning) in OUTPUTS.items():
+                names = tuple(f"{component}{BY}{variable}" for component in components)
+                values = getattr(self, quantity)[..., number]
+                text = f"derivative of the {meaning}, by {variable}"
+                items.append(Labelled(f"{quantity}{BY}{variable}", values, names, _per(own, unit), frame, text))
+        return items
+
+
+def _per(unit: str, other: str) -> str:
+    """Return the unit of a quotient; an unknown unit is named in words."""
+    if other == "1":
+        return unit
+    return f"({unit})/({other})" if other else f"({unit}) per unit of the parameter"
+
+
+def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensitivities | None:
+    """Return the derivatives in a file from its record of them and its arrays; None if an array was not written."""
+    variables = [str(variable) for variable in record["variables"]]
+    if not all(f"{quantity}{BY}{variable}" in items for quantity in OUTPUTS for variable in variables):
+        return None
+    omega, quaternion, rotation = (
+        np.stack([items[f"{quantity}{BY}{variable}"].values for variable in variables], axis=-1) for quantity in OUTPUTS
+    )
+    groups = {str(key): tuple(places) for key, places in record["groups"].items()}
+    return Sensitivities(tuple(variables), tuple(record["units"]), groups, omega, quaternion, rotation)

@@ -1,0 +1,222 @@
+"""Derivatives of motions by initial values and constants, against motions of 50 digits, and their way into results."""
+
+import pickle
+from fractions import Fraction
+from math import inf
+from operator import mul
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.cli.main import main
+from symrot.errors import InputError
+from tests.needs import needs_compiler
+
+TOP = {
+    "schema": 1,
+    "body": {"principal": [2, 3, 4], "about": "fixed_point"},
+    "initial": {"omega": ["1/2", "1/3", 2], "attitude": {"quaternion": [3, 1, 2, 1]}},
+    "span": {"t": [0, 2], "samples": 3},
+    "torque": [
+        {"kind": "gravity", "weight": 3, "center_of_mass": [0, "1/5", 1]},
+        {"kind": "damping", "linear": ["1/10", 0, "1/7"]},
+    ],
+}
+NAMES = ["omega_2", "weight", "I_yy", "linear_2"]
+SYMMETRIC = {
+    "schema": 1,
+    "body": {"principal": [2, 2, 1], "about": "fixed_point"},
+    "initial": {"omega": [0, "1/2", 3], "attitude": {"quaternion": [3, 1, 0, 0]}},
+    "span": {"t": [0, 5], "samples": 3},
+    "torque": [{"kind": "gravity", "weight": 3, "center_of_mass": [0, 0, 1]}],
+}
+
+
+UNIT = 1 << 190  # numbers of the reference are integers, in units of 2^-190: 57 digits
+CHANGE = UNIT >> 60  # of a variable: central differences then have errors near 1e-36
+
+
+def fixed(number):
+    number = Fraction(number)
+    return number.numerator * UNIT // number.denominator
+
+
+def times(a, b):
+    return a * b // UNIT
+
+
+def product(a, b):
+    return [
+        times(a[0], b[0]) - times(a[1], b[1]) - times(a[2], b[2]) - times(a[3], b[3]),
+        times(a[0], b[1]) + times(a[1], b[0]) + times(a[2], b[3]) - times(a[3], b[2]),
+        times(a[0], b[2]) - times(a[1], b[3]) + times(a[2], b[0]) + times(a[3], b[1]),
+        times(a[0], b[3]) + times(a[1], b[2]) - times(a[2], b[1]) + times(a[3], b[0]),
+    ]
+
+
+def convolved(f, g):
+    """Return the last coefficient of the product of two series of equal length."""
+    return sum(map(mul, f, reversed(g))) // UNIT
+
+
+def motion(omega, q, moments, weight, center, damping, duration):
+    """Return omega and q after a time, from Taylor series of 57 digits of Euler's equations, written out here."""
+    state = [*omega, *q]
+    for _ in range(duration * 8):
+        x = [[value] for value in state]
+        for n in range(48):
+            w1, w2, w3, p0, p1, p2, p3 = x
+            down = [  # the unit vector down, body components
+                2 * (convolved(p0, p2) - convolved(p1, p3)),
+                -2 * (convolved(p2, p3) + convolved(p0, p1)),
+                convolved(p1, p1) + convolved(p2, p2) - convolved(p0, p0) - convolved(p3, p3),
+            ]
+            across = (convolved(w2, w3), convolved(w3, w1), convolved(w1, w2))
+            rates = []
+            for i in range(3):
+                j, k = (i + 1) % 3, (i + 2) % 3
+                arm = times(center[j], down[k]) - times(center[k], down[j])
+                torque = times(moments[j] - moments[k], across[i]) - times(damping[i], x[i][n]) + times(weight, arm)
+                rates.append(torque * UNIT // moments[i])
+            rates += [
+                -(convolved(p1, w1) + convolved(p2, w2) + convolved(p3, w3)) // 2,
+                (convolved(p0, w1) + convolved(p2, w3) - convolved(p3, w2)) // 2,
+                (convolved(p0, w2) + convolved(p3, w1) - convolved(p1, w3)) // 2,
+                (convolved(p0, w3) + convolved(p1, w2) - convolved(p2, w1)) // 2,
+            ]
+            for series, rate in zip(x, rates, strict=True):
+                series.append(rate // (n + 1))
+        state = [sum(c >> (3 * n) for n, c in enumerate(series)) for series in x]  # at 1/8 s
+    return state
+
+
+def reference(scene, change, duration):
+    """Return the derivatives of omega, of the quaternion and of the small rotation by what ``change`` changes."""
+    heavy, *damped = scene.torques
+    ends = []
+    for sign in (-1, 0, 1):
+        values = {
+            "omega": [*map(fixed, scene.initial.omega_b)], "q": [*map(fixed, scene.initial.quaternion)],
+            "moments": [fixed(scene.body.inertia[i][i]) for i in range(3)], "weight": fixed(heavy.number("weight")),
+            "center": [*map(fixed, heavy.vector("center_of_mass"))],
+            "damping": [*map(fixed, damped[0].vector("linear"))] if damped else [0, 0, 0],
+        }  # fmt: skip
+        change(values, sign * CHANGE)
+        ends.append(motion(**values, duration=duration))
+    slope = [(high - low) * UNIT // (2 * CHANGE) for low, high in zip(ends[0], ends[2], strict=True)]
+    q = ends[1][3:]
+    rotation = [2 * x for x in product([q[0], -q[1], -q[2], -q[3]], slope[3:])[1:]]
+    return [np.array([float(Fraction(x, UNIT)) for x in part]) for part in (slope[:3], slope[3:], rotation)]
+
+
+def of(name, place=None):
+    def change(values, size):
+        if place is None:
+            values[name] += size
+        else:
+            values[name][place] += size
+
+    return change
+
+
+def rotated(values, size):
+    values["q"] = product(values["q"], [UNIT - times(size, size) // 8, 0, size // 2, 0])
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("content", "duration", "changes"),
+    [
+        (TOP, 2, {"omega_2": of("omega", 1), "weight": of("weight"), "I_yy": of("moments", 1),
+                  "linear_2": of("damping", 1)}),
+        (SYMMETRIC, 5, {"I_xx": of("moments", 0), "omega_1": of("omega", 0)}),
+    ],
+    ids=["damped", "exact"],
+)  # fmt: skip
+def test_sensitivities_agree_with_motions_of_fifty_digits(content, duration, changes):
+    """The second motion has a closed form, which a change of I_xx, of the centre or of omega_1 leaves."""
+    scene = symrot.Scene.from_dict(content)
+    trajectory = symrot.propagate(scene, t=[0, duration], sensitivities=list(changes))
+    for name, change in changes.items():
+        expected, computed = reference(scene, change, duration), trajectory.sensitivities[name]
+        for part, own in zip(expected, (computed.omega, computed.quaternion, computed.rotation), strict=True):
+            assert np.abs(own[-1] - part).max() <= 1e-12 * np.abs(part).max()
+
+
+@needs_compiler
+def test_the_transition_matrix_is_the_derivative_of_the_state():
+    """A step there and back is the identity; columns agree with motions of 50 digits."""
+    scene = symrot.Scene.from_dict(TOP)
+    trajectory = symrot.propagate(scene)
+    matrix = trajectory.transition(0, 2)
+    for column, change in ((1, of("omega", 1)), (4, rotated)):
+        omega, _, rotation = reference(scene, change, 2)
+        expected = np.concatenate([omega, rotation])
+        assert np.abs(matrix[:, column] - expected).max() <= 1e-12 * np.abs(expected).max()
+    middle = trajectory.transition(0.75, 2) @ trajectory.transition(0, 0.75)
+    assert np.abs(middle - matrix).max() <= 1e-12 * np.abs(matrix).max()
+    assert np.abs(trajectory.transition(2, 0) @ matrix - np.eye(6)).max() <= 1e-11
+
+
+@needs_compiler
+def test_sensitivities_travel_with_labels(tmp_path):
+    """They have names and units in tables, and return from files and pickles unchanged."""
+    trajectory = symrot.propagate(symrot.Scene.from_dict(TOP), sensitivities=NAMES)
+    own = trajectory.sensitivities
+    assert own.variables == tuple(NAMES) and not own["weight"].omega[0].any()
+    data = trajectory.to_xarray()
+    assert data.omega_by_weight.dims == ("time", "body_axis") and data.omega_by_weight.units == "(rad/s)/(N)"
+    assert data.quaternion_by_omega_2.dims == ("time", "component")
+    assert np.array_equal(trajectory.to_dataframe()["rotation_2_by_weight"], own["weight"].rotation[:, 1])
+    trajectory.save(tmp_path / "motion.npz")
+    for other in (
+        symrot.load(tmp_path / "motion.npz").sensitivities,
+        pickle.loads(pickle.dumps(trajectory)).sensitivities,
+    ):
+        assert other.groups == own.groups and other.units == own.units and np.array_equal(other.omega, own.omega)
+    assert np.abs(trajectory.at(2.0).sensitivities.omega[0] - own.omega[-1]).max() < 1e-14
+
+
+@needs_compiler
+def test_sensitivities_leave_the_motion_as_it_is():
+    scene = symrot.Scene.from_dict(TOP)
+    with_them, without = symrot.propagate(scene, sensitivities=["omega", "attitude"]), symrot.propagate(scene)
+    assert np.array_equal(with_them.y, without.y) and without.sensitivities is None
+    assert with_them.sensitivities["omega"].rotation.shape == (3, 3, 3)
+    assert np.array_equal(with_them.sensitivities["omega"].omega[0], np.eye(3))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"sensitivities": "omega"}, "expected a list of names"),
+        ({"sensitivities": []}, "at least one name"),
+        ({"sensitivities": ["wieght"]}, "did you mean 'weight'"),
+        ({"sensitivities": ["omega", "omega_2"]}, "omega_2 twice"),
+        ({"sensitivities": ["quaternion"]}, "expected 'attitude'"),
+        ({"sensitivities": ["tolerance"]}, "an initial value or a constant"),
+        ({"sensitivities": ["span.t"]}, "an initial value or a constant"),
+        ({"sensitivities": ["body.about"]}, "expected a number or a vector"),
+        ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected the state 'quaternion'"),
+        ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques with formulas"),
+        ({"sensitivities": ["omega"], "events": ["omega_3 == 0"]}, "leave them out with sensitivities"),
+    ],
+)
+def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):
+    with pytest.raises(InputError, match=message):
+        symrot.propagate(symrot.Scene.from_dict(TOP), **options)
+
+
+def test_torques_that_switch_have_no_sensitivities():
+    with pytest.raises(InputError, match="jump or bend"):
+        symrot.propagate("friction_wheel", sensitivities=["omega"])
+    with pytest.raises(InputError, match="jump or bend"):
+        symrot.propagate("friction_wheel").transition(0, 1)
+    with pytest.raises(InputError, match="finite times"):
+        symrot.propagate("t_handle").transition(0, inf)
+
+
+def test_the_command_line_refuses_an_unknown_variable(capsys):
+    assert main(["run", "t_handle", "--sensitivities", "wieght"]) == 2
+    assert "sensitivities: wieght" in capsys.readouterr().err
