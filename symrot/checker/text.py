@@ -315,7 +315,11 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
-    """Return the verdict on one equation; in a ``plain`` text, which is not SymPy's, = may mean a condition."""
+    """Return the verdict on one equation.
+
+    If the text is ``plain``, not SymPy syntax, a false equation may be meant as a condition, such as ``x^2 = 4``: its
+    verdict is then "definition".
+    """
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
@@ -448,7 +452,10 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation: as in ``I_ik = m*a_i*a_k``, indices of a pair occur alone too."""
+    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` is.
+
+    It is if a name has two of the indices i, j, k and l, and another name has one of these alone.
+    """
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}

@@ -147,9 +147,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether a formula, by its name, is for a radius through a point of the rim or surface.
+    """Return whether a formula, by its name, is for an axis along the radius to a point of the rim or surface.
 
-    Such an axis is hardly meant, unless the name of the quantity says which axis it is.
+    Hardly anybody means this axis by "about a point of the rim"; so return False if the ``quantity`` names its axis
+    itself, as I_x does.
     """
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
@@ -157,7 +158,8 @@ def _is_radial(name: str, quantity: str) -> bool:
 def is_component(name: str, quantity: str) -> bool:
     """Return whether a formula's name states the same component or axis as the index of a quantity does.
 
-    A quantity without an index may be any component, and so may the rate of an angle.
+    Also return True for a quantity without an index, and for the rate of an angle such as dphi: they rule out no
+    component.
     """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
@@ -172,7 +174,7 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula is for a certain place, while the context only says a pivot, which may be anywhere."""
+    """Return whether a body's formula is for a certain place, while the context states just a pivot, at any place."""
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 

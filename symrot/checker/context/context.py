@@ -204,7 +204,10 @@ _OF_AXES = re.compile(
 
 
 def _has_line(body: Body, line: str) -> bool:
-    """Return whether a body has a line such as a diameter; True if ``line`` is the title of a place that is no line."""
+    """Return whether a body has a line, as a disk has a diameter.
+
+    Also return True if ``line`` is a place and no line, such as "about an end".
+    """
     return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
 
 

@@ -266,9 +266,10 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that match a claim if its context is changed.
+    """Return the known formulas that match a claim in another context, to tell the user which one the claim fits.
 
-    The context is tried without the place, then with the other frame; if nothing matches, it is left out.
+    First the place is left out of the context, then the other frame is tried, and at last the whole context is left
+    out. The first of these that gives a match counts.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -325,7 +326,7 @@ def _decided(claim: Claim, left: Node, right: Node) -> Decision:
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" if a claim's formula provably differs from its repair, otherwise None."""
+    """Return the decision "false" if a claim's formula provably differs from the correction in ``verdict``, or None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -366,7 +367,10 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the rotation matrices that may be meant from space to body."""
+    """Yield the transposes of those known formulas that are rotation matrices, each with the decision on the formula.
+
+    A formula maps body components to space components; the author of a claim may mean the inverse map.
+    """
     for candidate, decision in decisions:
         if candidate.known.name.startswith("rotation matrix"):
             yield replace(candidate, value=candidate.value.T, how="transposed"), decision
@@ -450,7 +454,10 @@ def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, .
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula with one fault, for an axis whose place nothing states; or None."""
+    """Return the verdict "doubtful" if correcting one fault makes a claim's formula one of the known ones; or None.
+
+    It is used if nothing states the place of the axis, so that none of these formulas is certainly meant.
+    """
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
         if repairs and repairs[0].cost < MOST_COSTLY and diagnosis.code != "two_faults":
@@ -593,7 +600,10 @@ def _assignments(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can stand for a symbol of a known formula."""
+    """Return whether the letter ``name`` of a claim can stand for a ``symbol`` of a known formula.
+
+    A letter or symbol in ``pinned`` can only stand for the one of the same name.
+    """
     if symbol in pinned or name in pinned:
         return name == symbol
     meaning = context.meaning_of(name)

@@ -338,9 +338,10 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Return "true" for a claim that needs a certain sign of a root, or branch of asin, which its domain implies.
+    """Return "true" for a claim that holds on one branch of a root or of asin, if its domain implies this branch.
 
-    Return None for any other claim.
+    For example, ``sqrt(x**2) == x`` needs x >= 0, which a ``sqrt(x)`` elsewhere in the claim implies. Return None for
+    any other claim.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))

@@ -143,7 +143,10 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` exist near every point, which :func:`is_dense` can prove."""
+        """Return whether points that meet all ``needs`` are proven to exist near every point.
+
+        They are if all needs are nonzero divisors, and :func:`is_dense` is true of the formulas.
+        """
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:

@@ -50,8 +50,8 @@ class CalculusPart(NamesPart):
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
         r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
 
-        The exponent is None unless a power after the argument is taken for one of the whole call, as in
-        ``\sin\theta^2``.
+        The exponent is 2 if ``\sin\theta^2`` is read as (sin theta)^2; it is None if the power belongs to the argument
+        or if there is none.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:

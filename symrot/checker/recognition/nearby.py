@@ -86,7 +86,8 @@ class Near(NamedTuple):
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
 
-    There is none if the hypotheses make the formula equal to a known one at the test points.
+    The list is empty if the claim has hypotheses under which its own formula already equals a known one at the test
+    points, since then no change is needed.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []

@@ -91,7 +91,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether a path leads to the same part in an edited tree as in the original tree."""
+    """Return whether an edit left the way to a part, and the part itself, unchanged."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

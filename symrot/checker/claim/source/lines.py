@@ -72,7 +72,10 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context in which they state a sign."""
+    """Move hypotheses such as ``I_xy = ∫ x y dm`` into the context; return the other hypotheses and the new context.
+
+    Such a hypothesis says only whether products of inertia are defined with the minus sign.
+    """
     others = []
     for source in assume:
         readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")

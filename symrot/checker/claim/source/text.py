@@ -155,7 +155,10 @@ def claim_of_relation(
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Return ``I = n.T*I*n`` with the name I_n for the left side, a number, and a note; other equations unchanged."""
+    """Rename the left side of ``I = n.T*I*n`` to I_n, since it is a number and the I on the right a tensor.
+
+    Return the equation and a note on it; return any other equation unchanged, with an empty note.
+    """
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"

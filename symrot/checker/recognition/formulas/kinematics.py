@@ -225,7 +225,10 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
-    """Yield the components of a vector; their formulas are too short to be recognised without their names."""
+    """Yield each component of a vector with a word for it in its name, such as "first component of the ..".
+
+    The formula of a component is short: only a claim that names the component can be recognised by it.
+    """
     for word, component in zip(WORDS, column, strict=True):
         yield f"{word} component of the {name}", source, component
 
