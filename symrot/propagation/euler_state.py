@@ -116,7 +116,7 @@ class EulerMotion(Motion):
         plan = replace(plan, structure=replace(structure, attitude=True))
         for name in NAMES:
             if name in plan.constants:
-                raise InputError(f"state: expected a scene without a constant {name!r}, the name of an Euler angle")
+                raise InputError(f"state: expected a scene without a constant {name!r}, which is the name of an angle")
         if method == "auto":
             method = "dop853" if non_smooth_torque(plan) else "taylor"
         other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
