@@ -133,7 +133,8 @@ def verdict_on_readings(
     known = ("recognised", "true") if stated else ("recognised",)
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if _is_unknown(verdicts[0]) and not first:
-        first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "doubtful"), 0)
+        wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
+        first = wrong.index(True) if any(wrong) else 0
     if _is_unknown(verdicts[0]) or (first and verdicts[0][1].verdict == "doubtful"):
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than one near it or an unknown one
     (usual, verdict), *others = verdicts
@@ -147,6 +148,11 @@ def verdict_on_readings(
         notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
+
+
+def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
+    """Return whether the meaning that the context states makes a reading false."""
+    return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:

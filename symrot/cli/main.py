@@ -235,7 +235,9 @@ def _derive(options: Namespace) -> int:
     from symrot.workshop import derivation_pages
 
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
-        raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
+        raise InputError("derive: expected at most one of NAMEs, --all and --check (see `symrot derive --help`)")
+    if len(options.name) > 1 and (options.directory is None or options.step is not None):
+        raise InputError("derive: expected a folder, -o DIR, for several NAMEs, and no --step")
     if options.step is None and options.detail:
         raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
     if options.step is not None and not options.name:
@@ -261,8 +263,11 @@ def _derive(options: Namespace) -> int:
         written = derivation_pages.derive_all(directory, progress)
         progress("")
         say(str(path) for path in written)
+    elif options.name and options.directory is not None and options.step is None:
+        written = derivation_pages.write_handout(options.directory, options.format, options.name)
+        say(str(path) for path in written)
     elif options.name:
-        whole = catalogue.derivation(options.name)
+        whole = catalogue.derivation(options.name[0])
         page = derivation_pages.illustrated(whole) if options.step is None else whole.part(options.step, options.detail)
         sys.stdout.write(PAGES[options.format](page))
     else:
@@ -427,7 +432,7 @@ def _emit_arguments(parser: ArgumentParser) -> None:
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation (default: list all)")
+    parser.add_argument("name", metavar="NAME", nargs="*", help="derivations (default: list all)")
     parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
     parser.add_argument(
         "--check",
@@ -442,7 +447,8 @@ def _derive_arguments(parser: ArgumentParser) -> None:
         "--detail", action="store_true", help="with --step: show every expression between the two sides of its equation"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder that --all writes and --check reads (default: ./derivations)")  # fmt: skip
+                        help="folder for the pages of --all or of the NAMEs, and the folder that --check reads "
+                        "(default for --all and --check: ./derivations)")  # fmt: skip
 
 
 def _check_arguments(parser: ArgumentParser) -> None:

@@ -91,6 +91,13 @@ def test_intervals_alone_bound_rates_that_are_no_polynomials():
     assert not truncation._problem(quotient, method, list(bounds), box).leading
 
 
+def test_polynomials_with_too_many_terms_are_left_to_intervals(monkeypatch):
+    rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 100)))
+    exact = truncation_bounds(rates, method, box)
+    monkeypatch.setattr(truncation, "MOST_TERMS", 10)
+    assert max(truncation_bounds(rates, method, box).values()) > max(exact.values())
+
+
 def test_a_wrong_step_is_refuted():
     """With one wrong weight the method loses its order, is refused, and errs by more than the bound of the right one."""
     wrong = replace(RK4, weights={0: Fraction(1, 6), 1: Fraction(1, 3), 2: Fraction(1, 6), 3: Fraction(1, 3)})

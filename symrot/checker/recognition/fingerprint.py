@@ -25,7 +25,7 @@ MOST_UNDEFINED = 3
 """The most of these points at which a formula is tried; one without a value there has none where letters are equal."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
-MOST_CANCELLED = 12
+MOST_CANCELLED = 10
 """The most atoms of a formula whose fractions are cancelled, which takes seconds for the inverse of a tensor."""
 LARGEST_MULTIPLE = 400
 """The largest multiple of such a quarter, and the largest exponent, that is evaluated."""
