@@ -420,7 +420,7 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
                         "such as omega,q, or by constants of a scene")  # fmt: skip
-    parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
+    parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor, dop853 or exact")
     parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
     parser.add_argument("--cmake", action="store_true", help="with -o: also write the files with which CMake "
                         "and pkg-config find the kernels in this folder")  # fmt: skip

@@ -84,6 +84,8 @@ def certificate_files(
     Verdicts on object code are copied from the certificate on disk if they still hold. Bounds of rounding errors are
     on the kernel's own box; for a scene, they are ``bounds``.
     """
+    if not kernel.has_certificate:
+        return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
     own = json.loads(certificate).get("rounding")
     return {name: with_sections(certificate, _slots(directory / name) | {"rounding": own})}
