@@ -71,25 +71,36 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
         For an unknown method, or an order that the method does not have.
     """
     if name not in STEPS:
-        raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
+        raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, exact, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
+        raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
     if len(set(jacobian)) < len(jacobian):
         raise InputError(f"jacobian: expected each input once, got {', '.join(jacobian)}")
     method = STEPS[name](ORDER if order is None else order)
     return WithDerivatives(method, tuple(jacobian)) if jacobian else method
 
 
-def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> "StepText":
+def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
     """Return the texts of a step of a scene, and of its derivatives; raise InputError for a library kernel."""
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
+    if step == "exact":
+        return _exact(load_scene(scene), order, jacobian)
     text = StepText(load_scene(scene), step_method(step, order, jacobian))
     for name in jacobian:
         derivative_inputs(text.rates.program, name)
     return text
+
+
+def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelText:
+    if order is not None or jacobian:
+        option = "order" if order is not None else "jacobian"
+        raise InputError(f"{option}: expected none for the step exact, got {order or ', '.join(jacobian)}")
+    from symrot.workshop.steps.exact import ExactStepText
+
+    return ExactStepText(scene)
 
 
 class StepText(KernelText):
