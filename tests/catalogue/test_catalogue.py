@@ -286,6 +286,12 @@ def test_a_command_can_be_copied_from_latex():
     assert r"check \textquotesingle{}x == 1\textquotesingle{} -{}-given" in text and r"m\textsuperscript{2}" in text
 
 
+def test_a_long_formula_in_a_sentence_is_displayed_in_latex():
+    long = " + ".join(f"x_{{{n}}}" for n in range(30))
+    text = latex_document(Page("page", "Page", about=f"It is ${long}$. And $x$, too."))
+    assert rf"It is \fitted{{{long}.}} And $x$, too." in text
+
+
 def test_a_proof_on_the_board_fits_on_a_screen(derived):
     for page in derived.values():
         for number, step in enumerate(page.steps, 1):
