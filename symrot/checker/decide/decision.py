@@ -116,7 +116,7 @@ def decide_equation(equation: Equation) -> Decision:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
     except (TypeError, AttributeError) as reason:
         if is_unordered(reason):
-            return Decision("undecided", reason="two numbers in it are too close to tell which is larger")
+            return Decision("undecided", reason="two numbers in the claim are too close to tell which is larger")
         raise
 
 
@@ -587,7 +587,7 @@ def _obstacle(ring: FormulaRing) -> str:
     if ring.outside_scope:
         named = ring.outside_scope[:3]
         terms = ", ".join(f"functions of {as_text(term)}" if term.is_Rational else as_text(term) for term in named)
-        return f"too little is known here about {terms}, and no point was found where the sides provably differ"
+        return f"symrot knows too little about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])
         return (
@@ -595,5 +595,5 @@ def _obstacle(ring: FormulaRing) -> str:
             "and no point was found where they provably differ"
         )
     if ring.hypotheses:
-        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference; nor was a proof found"
+        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference, and no proof was found"
     return "no rational point was found at which the sides differ, since an angle depends on other symbols"

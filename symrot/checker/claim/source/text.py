@@ -340,7 +340,9 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
     """Return the units of a claim; raise InputError for an unknown unit, or for a name that the claim does not have."""
     for name, unit in units.items():
         if name not in known:
-            raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
+            raise InputError(
+                f"{place}: units: expected units only for names that occur in the claim, got {str(name)[:40]!r}"
+            )
         if not isinstance(unit, str):
             raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
         read_unit(unit, f"{place}: units: {name}")
