@@ -73,9 +73,9 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
     if name not in STEPS:
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, exact, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
+        raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
     if len(set(jacobian)) < len(jacobian):
         raise InputError(f"jacobian: expected each input once, got {', '.join(jacobian)}")
     method = STEPS[name](ORDER if order is None else order)
