@@ -24,7 +24,7 @@ from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import rounding_section
 from symrot.certificates.rounding.scenes import ANY
 from symrot.certificates.truncation import truncation_bounds
-from symrot.codegen.steps import SIZE, Method, step_signature, stepped
+from symrot.codegen.steps import SIZE, Method, WithDerivatives, step_signature, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import FUNCTIONS, Node, parse, text
@@ -105,7 +105,7 @@ class _Residue:
     def __truediv__(self, other: Any) -> "_Residue":
         right = _Residue.of(other)
         if not right.value:
-            raise CertificateError("expected a point at which no divisor is zero, got another one")
+            raise CertificateError("expected a point at which no divisor is zero, got a point with a zero divisor")
         return self * _Residue(pow(right.value, -1, PRIME), right.degree)
 
     def __rtruediv__(self, other: Any) -> "_Residue":
@@ -159,13 +159,18 @@ def step_certificate(step: StepUnderTest) -> str:
             "title": step.title,
             "regenerate": step.command,
             "method": step.method.formula,
-            "step": {"method": step.method.name, "order": step.method.order},
+            "step": {"method": step.method.name, "order": step.method.order} | _derivatives(step.method),
             "rates": _rates_section(step.rates, step.values),
             "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
             "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
             "trusted": TRUSTED | NOT_STATED,
         }
     )
+
+
+def _derivatives(method: Method) -> Data:
+    """Return the inputs by which a step is differentiated, for the section ``step``; empty for a step alone."""
+    return {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
 
 
 def is_step(data: object) -> bool:

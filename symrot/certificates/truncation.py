@@ -42,7 +42,8 @@ PIECES = 24
 
 BITS = 64  # of the ends of intervals
 EXACT_ORDERS = 2  # coefficients of the error that are exact polynomials, if the rates are polynomials
-HIGHEST = 10  # order of such a coefficient; polynomials of higher orders have too many terms
+HIGHEST = 10  # such a coefficient has a lower order
+MOST_TERMS = 4000  # of such a coefficient of a state; with more, intervals alone bound the error
 GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
 ATTEMPTS = 24
 
@@ -368,7 +369,10 @@ def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) ->
     expanded = {name: _terms(each) for name, each in rates.evaluate(values, {}, number).items()}
     bare = Program(rates.signature, (), tuple((name, _sum_of(terms)) for name, terms in expanded.items()))
     count = orders[-1] + 1
-    exact = coefficients(recurrences(bare), count - 1, values, {}, number)
+    for order in range(1, count):  # the polynomials grow with the order, so that too long ones are noticed early
+        exact = coefficients(recurrences(bare), order, values, {}, number)
+        if max(len(_terms(domain(0) + state[order])) for state in exact) > MOST_TERMS:
+            return _Problem(bare, method, states, ())
     size = _Power((0, number(Fraction(1)), *(0,) * (count - 2)))
     start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
     after = stepped(bare, method, start, size, {}, lambda value: _Power.of(number(value), count))

@@ -112,7 +112,7 @@ def _on_name(
     decided, so that None stands in the place of a decision.
     """
     if claim.context.sign_of_products == "plus":
-        from symrot.checker.context import product_signs
+        from symrot.checker import product_signs
 
         result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
         return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))

@@ -27,10 +27,11 @@ HIGHEST_DEGREE = 12
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
-    """Return the verdict "definition" in place of "false" on an equation that restricts letters; others unchanged.
+    """Turn the verdict "false" into "definition" for an equation that restricts its letters; return others unchanged.
 
-    Such an equation has one letter, once or in the terms of a polynomial, and a real solution; or each of its sides is
-    a single letter. ``x² = -1``, which holds for no real x, stays false.
+    An equation restricts a letter if it has no other letter and a real solution; the letter must occur only once, or in
+    the powers of a polynomial, as in ``x² = 4``. An equation of two letters, ``a = b``, counts too. ``x² = -1``, which
+    holds for no real x, stays false.
     """
     if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
         return verdict

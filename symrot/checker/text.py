@@ -133,7 +133,8 @@ def verdict_on_readings(
     known = ("recognised", "true") if stated else ("recognised",)
     first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
     if _is_unknown(verdicts[0]) and not first:
-        first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict == "doubtful"), 0)
+        wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
+        first = wrong.index(True) if any(wrong) else 0
     if _is_unknown(verdicts[0]) or (first and verdicts[0][1].verdict == "doubtful"):
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than one near it or an unknown one
     (usual, verdict), *others = verdicts
@@ -147,6 +148,11 @@ def verdict_on_readings(
         notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
+
+
+def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
+    """Return whether the meaning that the context states makes a reading false."""
+    return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
@@ -315,7 +321,11 @@ def _differs(echo: str, source: str) -> bool:
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
-    """Return the verdict on one equation; in a ``plain`` text, which is not SymPy's, = may mean a condition."""
+    """Return the verdict on one equation.
+
+    If the text is ``plain``, not SymPy syntax, a false equation may be meant as a condition, such as ``x^2 = 4``: its
+    verdict is then "definition".
+    """
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
@@ -448,7 +458,10 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation: as in ``I_ik = m*a_i*a_k``, indices of a pair occur alone too."""
+    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` is.
+
+    It is if a name has two of the indices i, j, k and l, and another name has one of these alone.
+    """
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -535,7 +548,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
             verdict = replace(under_name, notes=(*under_name.notes, note))
         elif verdict.verdict == "false" and _names(left) and not _names(right) - {"pi"} and _depends_on_letters(claim):
             letters = " and ".join(sorted(_names(left) - {"pi"}))
-            verdict = Verdict("definition", reason=f"it has numbers for {letters}, which nothing here gives")
+            verdict = Verdict(
+                "definition",
+                reason=f"the equation holds only for certain values of {letters}, and the text does not state any",
+            )
         decided.append(verdict)
     return decided
 

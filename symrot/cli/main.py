@@ -235,7 +235,9 @@ def _derive(options: Namespace) -> int:
     from symrot.workshop import derivation_pages
 
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
-        raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
+        raise InputError("derive: expected at most one of NAMEs, --all and --check (see `symrot derive --help`)")
+    if len(options.name) > 1 and (options.directory is None or options.step is not None):
+        raise InputError("derive: expected a folder, -o DIR, for several NAMEs, and no --step")
     if options.step is None and options.detail:
         raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
     if options.step is not None and not options.name:
@@ -261,8 +263,11 @@ def _derive(options: Namespace) -> int:
         written = derivation_pages.derive_all(directory, progress)
         progress("")
         say(str(path) for path in written)
+    elif options.name and options.directory is not None and options.step is None:
+        written = derivation_pages.write_handout(options.directory, options.format, options.name)
+        say(str(path) for path in written)
     elif options.name:
-        whole = catalogue.derivation(options.name)
+        whole = catalogue.derivation(options.name[0])
         page = derivation_pages.illustrated(whole) if options.step is None else whole.part(options.step, options.detail)
         sys.stdout.write(PAGES[options.format](page))
     else:
@@ -415,8 +420,10 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
                         "such as omega,q, or by constants of a scene")  # fmt: skip
-    parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor or dop853")
-    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor, dop853 or exact")
+    parser.add_argument(
+        "--order", type=int, metavar="N", help="order of the Taylor series with --step taylor, 1 to 16 (default: 8)"
+    )
     parser.add_argument("--cmake", action="store_true", help="with -o: also write the files with which CMake "
                         "and pkg-config find the kernels in this folder")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
@@ -425,7 +432,7 @@ def _emit_arguments(parser: ArgumentParser) -> None:
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation (default: list all)")
+    parser.add_argument("name", metavar="NAME", nargs="*", help="derivations (default: list all)")
     parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
     parser.add_argument(
         "--check",
@@ -440,7 +447,8 @@ def _derive_arguments(parser: ArgumentParser) -> None:
         "--detail", action="store_true", help="with --step: show every expression between the two sides of its equation"
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder that --all writes and --check reads (default: ./derivations)")  # fmt: skip
+                        help="folder for the pages of --all or of the NAMEs, and the folder that --check reads "
+                        "(default for --all and --check: ./derivations)")  # fmt: skip
 
 
 def _check_arguments(parser: ArgumentParser) -> None:
@@ -474,10 +482,16 @@ def _check_arguments(parser: ArgumentParser) -> None:
 
 def _context_options(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "--body", metavar="WORDS", default="", help="the body: 'solid cylinder of radius r and height h'"
+        "--body",
+        metavar="WORDS",
+        default="",
+        help="the body that the claim is about, such as 'solid cylinder of radius r and height h'",
     )
     parser.add_argument(
-        "--frame", metavar="FRAME", default="", help="frame of angular velocities and rates: body or space"
+        "--frame",
+        metavar="FRAME",
+        default="",
+        help="frame in which the claim's angular velocities and rates have their components: body or space",
     )
     parser.add_argument("--sequence", metavar="SEQUENCE", default="",
                         help="Euler angles: ZXZ or 3-1-3 about moving axes, zyx about fixed axes")  # fmt: skip

@@ -21,7 +21,7 @@ from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError
 from symrot.formula.exact_numbers import show
 
-__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "loaded", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "begin", "joined", "load", "loaded", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
@@ -53,6 +53,11 @@ def _files() -> dict[str, Path]:
 
 def source(name: str) -> str:
     """Return the text of the C file ``name.c`` with the texts of its headers inserted, each only once."""
+    return joined(name)
+
+
+def joined(*names: str) -> str:
+    """Return the texts of several C files as one, with the texts of their headers inserted, each only once."""
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -64,7 +69,7 @@ def source(name: str) -> str:
             parts += [*([] if included in seen else ["\n", text(included)]), after]
         return "".join(parts).removeprefix("\n")
 
-    return text(f"{name}.c") + "\n"
+    return "\n".join(f"{text(f'{name}.c')}\n" for name in names)
 
 
 def begin(name: str) -> list[library.Building]:

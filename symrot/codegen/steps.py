@@ -8,15 +8,22 @@ with numbers that record their operations, and the record is the program.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from typing import Any
 
+from symrot.codegen.duals import Dual, dual_functions
 from symrot.codegen.recording import Recorder
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
+from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import FUNCTIONS
+from symrot.kernels.jacobian import jacobian_argument
 
-__all__ = ["RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "step_program", "step_signature", "stepped"]
+__all__ = [
+    "RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "WithDerivatives", "derivative_inputs", "step_program",
+    "step_signature", "stepped",
+]  # fmt: skip
 
 STATE, SIZE, NEXT = "x", "dt", "next"
 
@@ -50,7 +57,34 @@ class TaylorSeries:
         return f"Taylor series of the motion up to dt^{self.order}"
 
 
-Method = RungeKutta | TaylorSeries
+@dataclass(frozen=True)
+class WithDerivatives:
+    """A method together with the exact derivatives of its step by inputs of the step, which are names as in ``by``.
+
+    A name is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one state or one
+    parameter.
+    """
+
+    plain: RungeKutta | TaylorSeries
+    by: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of the method without derivatives."""
+        return self.plain.name
+
+    @property
+    def order(self) -> int:
+        """The order of the method."""
+        return self.plain.order
+
+    @property
+    def formula(self) -> str:
+        """The method in words, for the head comment of its text."""
+        return f"{self.plain.formula}, and its derivatives by {', '.join(self.by)}"
+
+
+Method = RungeKutta | TaylorSeries | WithDerivatives
 _HALF = Fraction(1, 2)
 RK4 = RungeKutta(
     "rk4", 4, (Fraction(0), _HALF, _HALF, Fraction(1)), ({}, {0: _HALF}, {1: _HALF}, {2: Fraction(1)}),
@@ -79,6 +113,14 @@ def stepped(
         As for :meth:`symrot.formula.program.Program.evaluate`.
     """
     states = [name for name, *_ in rates.signature.argument("y").components]
+    if isinstance(method, WithDerivatives):
+        groups = [[name for name, *_ in derivative_inputs(rates, name)] for name in method.by]
+        chosen, one, zero = set(chain(*groups)), number(Fraction(1)), number(Fraction(0))
+        duals = {name: Dual(x, {name: one} if name in chosen else {}) for name, x in {**values, SIZE: dt}.items()}
+        plain = (method.plain, duals, duals[SIZE], dual_functions(functions))
+        results = stepped(rates, *plain, lambda value: Dual(number(value), {}))
+        slopes_of = [(result, name) for group in groups for result in results for name in group]
+        return [result.value for result in results] + [result.slopes.get(name, zero) for result, name in slopes_of]
     if isinstance(method, TaylorSeries):
         series = coefficients(recurrences(rates), method.order, values, functions, number)
         return [_polynomial(each, dt) for each in series]
@@ -135,13 +177,36 @@ def _polynomial(series: Sequence[Any], dt: Any) -> Any:
     return value
 
 
-def step_signature(rates: Program, name: str) -> Signature:
-    """Return the name and the arguments of a step: t, x, p (if the rates have parameters), dt, next."""
+def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], ...]:
+    """Return the inputs of a step that a name in :class:`WithDerivatives` stands for: (name, unit, meaning) of each.
+
+    Raises
+    ------
+    InputError
+        If the step has no such input.
+    """
+    inputs = {each.name: each for each in step_signature(rates, "").arguments if each.role == "in"}
+    families = {"omega": "omega_", "q": "q"}
+    states = [each for each in inputs[STATE].components if name in families and each[0].startswith(families[name])]
+    if name in inputs or states:
+        return tuple(states) or inputs[name].components
+    every = {each[0]: each for argument in inputs.values() for each in argument.components}
+    if name in every:
+        return (every[name],)
+    raise InputError(
+        f"jacobian: expected inputs of the step ({', '.join(dict.fromkeys([*inputs, *every]))}), got {name!r}"
+    )
+
+
+def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signature:
+    """Return the name and the arguments of a step: t, x, p (if the rates have parameters), dt, next, derivatives."""
     time, state = rates.signature.argument("t"), rates.signature.argument("y")
     size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
     results = tuple((f"{NEXT}_{each}", unit, f"{meaning} at t + dt") for each, unit, meaning in state.components)
     parameters = tuple(a for a in rates.signature.arguments if a.name == "p" and a.size)
-    return Signature(name, (time, replace(state, name=STATE), *parameters, size, Argument(NEXT, "out", results)))
+    target = Argument(NEXT, "out", results)
+    slopes = [jacobian_argument(target, each, derivative_inputs(rates, each)) for each in by]
+    return Signature(name, (time, replace(state, name=STATE), *parameters, size, target, *slopes))
 
 
 def step_program(rates: Program, method: Method, name: str) -> Program:
@@ -161,10 +226,10 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
     InputError
         If the method is a Taylor series and the rates contain an operation without one.
     """
-    signature = step_signature(rates, name)
+    signature = step_signature(rates, name, method.by if isinstance(method, WithDerivatives) else ())
     recorder = Recorder()
     inputs = {each: recorder.symbol(each) for a in signature.arguments if a.role == "in" for each, *_ in a.components}
     functions = {each: recorder.function(each) for each in FUNCTIONS}
     outputs = stepped(rates, method, inputs, inputs[SIZE], functions, recorder.constant)
-    results = (each for each, *_ in signature.argument(NEXT).components)
+    results = [each for a in signature.arguments if a.role == "out" for each, *_ in a.components]
     return recorder.program(signature, dict(zip(results, outputs, strict=True)))

@@ -1,8 +1,9 @@
 """Pages of derivations with their figures: printed, written to a folder, and compared with the files there."""
 
+import re
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from difflib import unified_diff
 from functools import cache
@@ -16,9 +17,9 @@ from symrot.files.reading import refuse_special
 from symrot.lessons.page import taught
 from symrot.proof.derivation import PrintedPage
 from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
-from symrot.proof.pages import book, math_font
+from symrot.proof.pages import book, latex_book, math_font
 
-__all__ = ["check", "derive_all", "illustrated", "pages", "write_pages"]
+__all__ = ["check", "derive_all", "illustrated", "pages", "write_handout", "write_pages"]
 
 Chapters = dict[str, list[PrintedPage]]
 """Chapter -> its pages, in reading order."""
@@ -113,11 +114,11 @@ def _figures(page: Page) -> list[Figure]:
     return [item for item in [*page.opening, *page.items] if isinstance(item, Figure)]
 
 
-def write_pages(directory: Path | str, form: str) -> list[Path]:
-    """Write all derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
+def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) -> list[Path]:
+    """Write derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
 
-    The book begins with ``index.html``. With LaTeX, figures are written as PDF into the
-    folder ``figures`` if the program :data:`CONVERTER` is installed.
+    The book in HTML begins with ``index.html``. With LaTeX, each page is a document, and ``book.tex`` has all of them;
+    figures are written as PDF into the folder ``figures`` if the program :data:`CONVERTER` is installed.
 
     Parameters
     ----------
@@ -125,17 +126,23 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
         The directory, which is created if it does not exist.
     form : str
         ``"latex"`` or ``"html"``.
+    chosen : sequence of str
+        Names of derivations; all if empty. Their order is the reading order.
 
     Raises
     ------
     InputError
-        For an unknown format.
+        For an unknown format or an unknown derivation.
     """
     if form not in FORMS:
         raise InputError(f"form: expected {' or '.join(FORMS)}, got {form!r}")
+    derived = {name: _page(name) for name in chosen or names()}
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    chapters = {chapter: [_page(name) for name in members] for chapter, members in READING_ORDER.items()}
+    chapters = {
+        chapter: [derived[name] for name in members if name in derived] for chapter, members in READING_ORDER.items()
+    }
+    chapters = {chapter: members for chapter, members in chapters.items() if members}
     written = []
     for name, content in FORMS[form](chapters).items():
         path = directory / name
@@ -147,12 +154,51 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
     return written
 
 
+def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> list[Path]:
+    """Write a few derivations into a directory for students, and return the paths.
+
+    Links to pages that the handout does not have become plain text. Parameters and exceptions are those of
+    :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each page.
+    """
+    if form != "markdown":
+        paths = write_pages(directory, form, chosen)
+        for path in paths if form == "html" else ():
+            if path.suffix == ".html":
+                path.write_bytes(_only_links_to(chosen, LINK_IN_HTML, path.read_bytes().decode()).encode())
+        return paths
+    directory = Path(directory)
+    written = []
+    texts: dict[str, str] = {}
+    for name in chosen:
+        page = _page(name)
+        texts[f"{name}.md"] = _only_links_to(chosen, LINK, page.markdown())
+        texts |= {figure.file: figure.svg() for figure in _figures(page)}
+    for file, text in texts.items():
+        path = directory / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text.encode())
+        written.append(path)
+    return written
+
+
+LINK = re.compile(r"\[(?P<label>[^\]]+)\]\((?P<page>\w+)\.md\)")
+LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
+"""Links between pages."""
+
+
+def _only_links_to(chosen: Sequence[str], link: re.Pattern[str], text: str) -> str:
+    """Return a text in which links to derivations other than the chosen ones are plain text."""
+    missing = set(names()) - set(chosen)
+    return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
+
+
 def _html(chapters: Chapters) -> dict[str, bytes]:
     return _encoded(book(TITLE, ABOUT, chapters)) | {math_font.FILE: math_font.content()}
 
 
 def _latex(chapters: Chapters) -> dict[str, bytes]:
-    return _encoded({f"{page.name}.tex": page.latex() for members in chapters.values() for page in members})
+    documents = {f"{page.name}.tex": page.latex() for members in chapters.values() for page in members}
+    return _encoded({"book.tex": latex_book(TITLE, ABOUT, chapters)} | documents)
 
 
 def _encoded(texts: dict[str, str]) -> dict[str, bytes]:

@@ -159,8 +159,8 @@ def emit(
         a state, or a physical constant such as ``"A"``. The derivatives of ``dy`` by ``omega`` are the output
         ``dy_by_omega``, row by row: one row for each component of ``dy``.
     step : str, optional
-        ``"rk4"``, ``"taylor"`` or ``"dop853"``: emit one time step of a scene instead of its rates, the function
-        ``next = f(t, x, p, dt)``, with C files for double and float and a test against values of 40 digits.
+        ``"rk4"``, ``"taylor"``, ``"dop853"`` or ``"exact"``: emit one time step of a scene instead of its rates, the
+        function ``next = f(t, x, p, dt)``, with C files for double and float and a test against known values.
     order : int, optional
         Order of the step ``"taylor"``, 1 to 16 (default 8).
 

@@ -63,7 +63,7 @@ def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int 
     if step is not None:
         return step_text(kernel, step, order, variables)
     if order is not None:
-        raise InputError(f"--order: expected --step taylor as well, got only the order {order}")
+        raise InputError(f"--order: expected '--step taylor' as well, got only the order {order}")
     return kernel_text(kernel, variables)
 
 
@@ -84,6 +84,8 @@ def certificate_files(
     Verdicts on object code are copied from the certificate on disk if they still hold. Bounds of rounding errors are
     on the kernel's own box; for a scene, they are ``bounds``.
     """
+    if not kernel.has_certificate:
+        return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
     own = json.loads(certificate).get("rounding")
     return {name: with_sections(certificate, _slots(directory / name) | {"rounding": own})}

@@ -54,6 +54,7 @@ class KernelText(ABC):
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
+    has_certificate: ClassVar[bool] = True
 
     @abstractmethod
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:

@@ -13,10 +13,20 @@ from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
-from symrot.codegen.steps import RK4, Method, RungeKutta, TaylorSeries, step_program, stepped
+from symrot.codegen.steps import (
+    RK4,
+    Method,
+    RungeKutta,
+    TaylorSeries,
+    WithDerivatives,
+    derivative_inputs,
+    step_program,
+    stepped,
+)
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
+from symrot.kernels.jacobian import jacobian_name
 from symrot.kernels.library import is_kernel
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
 from symrot.scene.scene import Scene, SceneSource, load_scene
@@ -43,7 +53,7 @@ STEPS: Mapping[str, Callable[[int], Method]] = {"rk4": lambda order: RK4, "taylo
 """The methods of emitted steps, by name; each is made from the order of the Taylor series."""
 
 
-def step_method(name: str, order: int | None = None) -> Method:
+def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:
     """Return the method of a step.
 
     Parameters
@@ -52,6 +62,8 @@ def step_method(name: str, order: int | None = None) -> Method:
         ``"rk4"``, ``"taylor"`` or ``"dop853"``.
     order : int, optional
         Order of the Taylor series, 1 to 16; default 8.
+    jacobian : sequence of str
+        Inputs by which the step is differentiated too, see :class:`symrot.codegen.steps.WithDerivatives`.
 
     Raises
     ------
@@ -59,22 +71,36 @@ def step_method(name: str, order: int | None = None) -> Method:
         For an unknown method, or an order that the method does not have.
     """
     if name not in STEPS:
-        raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, got {name!r}")
+        raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, exact, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
+        raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
-    return STEPS[name](ORDER if order is None else order)
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
+    if len(set(jacobian)) < len(jacobian):
+        raise InputError(f"jacobian: expected each input once, got {', '.join(jacobian)}")
+    method = STEPS[name](ORDER if order is None else order)
+    return WithDerivatives(method, tuple(jacobian)) if jacobian else method
 
 
-def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> "StepText":
-    """Return the texts of a step of a scene; raise InputError for a library kernel or for derivatives of a step."""
+def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
+    """Return the texts of a step of a scene, and of its derivatives; raise InputError for a library kernel."""
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
-    if jacobian:
-        raise InputError(f"jacobian: expected no derivatives of a step, got {', '.join(jacobian)} with the step {step}")
-    method = step_method(step, order)
-    return StepText(load_scene(scene), method)
+    if step == "exact":
+        return _exact(load_scene(scene), order, jacobian)
+    text = StepText(load_scene(scene), step_method(step, order, jacobian))
+    for name in jacobian:
+        derivative_inputs(text.rates.program, name)
+    return text
+
+
+def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelText:
+    if order is not None or jacobian:
+        option = "order" if order is not None else "jacobian"
+        raise InputError(f"{option}: expected none for the step exact, got {order or ', '.join(jacobian)}")
+    from symrot.workshop.steps.exact import ExactStepText
+
+    return ExactStepText(scene)
 
 
 class StepText(KernelText):
@@ -93,6 +119,8 @@ class StepText(KernelText):
     def __init__(self, scene: Scene, method: Method) -> None:
         self.rates, self.method = SceneText(scene), method
         self.name = f"{self.rates.name.removesuffix('_rates')}_{method.name}_step"
+        if isinstance(method, WithDerivatives):
+            self.name = jacobian_name(self.name, method.by)
 
     @cached_property
     def _rates_program(self) -> Program:
@@ -107,8 +135,12 @@ class StepText(KernelText):
 
     def _description(self, target: str) -> Description:
         scene, order = self.rates.scene, ""
-        if isinstance(self.method, TaylorSeries) and self.method.order != ORDER:
-            order = f" --order {self.method.order}"
+        plain, jacobian, slopes = self.method, "", ""
+        if isinstance(plain, WithDerivatives):
+            jacobian, slopes = f" --jacobian {','.join(plain.by)}", "; with its derivatives, row by row"
+            plain = plain.plain
+        if isinstance(plain, TaylorSeries) and plain.order != ORDER:
+            order = f" --order {plain.order}"
         contract = (
             ("Method", self.method.formula),
             *((("Parameters", "those of the scene are in {kernel}_parameters.h"),) if self._parameter_names else ()),
@@ -117,10 +149,10 @@ class StepText(KernelText):
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
         )
         return Description(
-            title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt",
+            title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt{slopes}",
             domain="all states of finite size; the norm of a quaternion drifts with the error of the method",
             derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
-            command=f"symrot emit {scene.name} --step {self.method.name}{order} --target {target}",
+            command=f"symrot emit {scene.name} --step {self.method.name}{order}{jacobian} --target {target}",
             contract=contract if target == "c" else contract[:1],
         )  # fmt: skip
 
@@ -207,13 +239,15 @@ class StepText(KernelText):
     @cached_property
     def _test(self) -> str:
         """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
-        count, parameters = len(self._vectors[0][0]), self.rates.inputs.parameters
+        count, outputs, parameters = len(self._vectors[0][0]), len(self._vectors[0][2]), self.rates.inputs.parameters
+        columns = "STATES" if outputs == count else "OUTPUTS"
         included = [f'#include "{parameters_file(self.name)}"'] if parameters else []
         return "\n".join([
             f"/* Test of {self.name}: returns 0 if double and float agree with values of {DIGITS} digits. */",
             "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', *included, "",
-            f"#define STATES {count}", f"#define VECTORS {len(self._vectors)}", "",
-            _table("vectors[VECTORS][2][STATES]", [[start, after] for start, _, after in self._vectors]),
+            f"#define STATES {count}", *([] if outputs == count else [f"#define OUTPUTS {outputs}"]),
+            f"#define VECTORS {len(self._vectors)}", "",
+            _table(f"vectors[VECTORS][2][{columns}]", [[start, after] for start, _, after in self._vectors]),
             _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
             "", *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
             "int main(void)", "{", "    const int failed = check() || checkf();",
@@ -226,13 +260,18 @@ class StepText(KernelText):
         copies = [f"    {real.type} p[{len(parameters)}];",
                   f"    for (int i = 0; i < {len(parameters)}; ++i)",
                   f"        p[i] = ({real.type})symrot_{self.name}_parameters[i];"] if parameters else []  # fmt: skip
-        called = ", ".join(["0", "x", *(["p"] if parameters else []), f"({real.type})sizes[k]", "next"])
+        sizes = [a.size for a in self._program.signature.arguments if a.role == "out"]
+        results = ["next", *(f"next + {sum(sizes[:place])}" for place in range(1, len(sizes)))]
+        columns = "STATES" if len(sizes) == 1 else "OUTPUTS"
+        called = ", ".join(["0", "x", *(["p"] if parameters else []), f"({real.type})sizes[k]", *results])
         return [
-            f"static int check{real.suffix}(void)", "{", f"    {real.type} x[STATES], next[STATES];", *copies,
+            f"static int check{real.suffix}(void)", "{", f"    {real.type} x[STATES], next[{columns}];", *copies,
             "    for (int k = 0; k < VECTORS; ++k) {", "        double scale = 1;",
-            "        for (int i = 0; i < STATES; ++i) {", f"            x[i] = ({real.type})vectors[k][0][i];",
-            "            scale = fmax(scale, fabs(vectors[k][1][i]));", "        }",
-            f"        {c_name(self.name, real)}({called});", "        for (int i = 0; i < STATES; ++i)",
+            "        for (int i = 0; i < STATES; ++i)" + (" {" if columns == "STATES" else ""),
+            f"            x[i] = ({real.type})vectors[k][0][i];",
+            *([] if columns == "STATES" else ["        for (int i = 0; i < OUTPUTS; ++i)"]),
+            "            scale = fmax(scale, fabs(vectors[k][1][i]));", *(["        }"] if columns == "STATES" else []),
+            f"        {c_name(self.name, real)}({called});", f"        for (int i = 0; i < {columns}; ++i)",
             f"            if (!(fabs(next[i] - vectors[k][1][i]) <= {tolerance}*scale))", "                return 1;",
             "    }", "    return 0;", "}",
         ]  # fmt: skip

@@ -19,7 +19,8 @@ from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 from symrot.proof.derivation import Derivation, ProofError
-from symrot.proof.page import Step, Table
+from symrot.proof.page import Page, Step, Table
+from symrot.proof.pages import latex_book, latex_document
 from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
 
@@ -253,6 +254,47 @@ def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
         derivation_pages.write_pages(tmp_path, "pdf")
 
 
+def test_a_handout_has_the_chosen_pages_and_no_dead_links(tmp_path, capsys):
+    chosen = ["intermediate_axis", "spherical_body"]
+    for form in ("html", "latex", "markdown"):
+        assert main(["derive", *chosen, "--format", form, "-o", str(tmp_path / form)]) == 0
+    written = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
+    assert written == {Path(line).relative_to(tmp_path).as_posix() for line in capsys.readouterr().out.split()}
+    assert {"html/index.html", "latex/book.tex", "latex/spherical_body.tex", "markdown/spherical_body.md"} <= written
+    for form, pattern in (("html", r'href="([^"#]+)"'), ("markdown", r"\]\(([^)#]+)\)")):
+        for path in (tmp_path / form).glob("*.*"):
+            for target in re.findall(pattern, path.read_text()) if path.suffix in (".html", ".md") else ():
+                assert (tmp_path / form / target).exists(), (path.name, target)
+
+
+def test_the_latex_book_has_parts_chapters_and_links():
+    text = latex_book("Bodies", "About.", {"First": [catalogue.derivation("intermediate_axis")],
+                                           "Last": [catalogue.derivation("euler_singularities")]})  # fmt: skip
+    assert text.count(r"\part{") == 2 and text.count(r"\chapter{") == 2 and r"\tableofcontents" in text
+    assert r"\pagelink{euler_body_rates}{all sequences}" in text and text.count(r"\begin{document}") == 1
+    assert text.count(r"\begin{longtable}") == text.count(r"\end{longtable}") == 2
+
+
+def test_bold_words_are_bold_in_latex():
+    page = Page("page", "Page", about="**Is $x^2$ positive?** The code `x**2` and `y**2`, *yes*.")
+    assert r"\textbf{Is $x^2$ positive?} The code \texttt{x**2} and \texttt{y**2}, \emph{yes}." in latex_document(page)
+
+
+def test_a_command_can_be_copied_from_latex():
+    page = Page("page", "Page", about="Try `symrot check 'x == 1' --given 'x > 0'`, with x in kg m^2.")
+    text = latex_document(page)
+    assert r"check \textquotesingle{}x == 1\textquotesingle{} -{}-given" in text and r"m\textsuperscript{2}" in text
+
+
+def test_a_proof_on_the_board_fits_on_a_screen(derived):
+    for page in derived.values():
+        for number, step in enumerate(page.steps, 1):
+            if step.board:
+                detail = page.part(number, True).latex().split(r"\section*{In detail}")[1]
+                lines = detail.split(r"\paragraph{Units}")[0].split(r"\medskip")[0].strip().count("\n") + 1
+                assert lines <= 33, (page.name, number)
+
+
 def test_links_lead_to_pages(printed):
     for name, text in printed.items():
         for target in re.findall(r"\]\(([^)#]+)\)", text):
@@ -273,6 +315,8 @@ def test_one_step_on_the_command_line(form, start, capsys):
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
         (["heavy_top", "--detail"], "expected --step N"),
+        (["heavy_top", "poinsot"], "expected a folder, -o DIR, for several NAMEs"),
+        (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),
         (["heavy_top", "--step", "two"], "invalid int"),

@@ -66,6 +66,16 @@ def test_inverse_functions_and_the_arguments_of_atan2_are_exchanged():
     assert symrot.check("θ = acos(q_0)", where=["theta = angle of rotation"]).diagnosis.code == "half_angle"
 
 
+def test_the_reading_that_the_context_makes_false_counts_before_one_that_nothing_explains():
+    verdict = symrot.check("omega_x' = phi' sin psi + theta' cos psi", frame="body", sequence="ZXZ")
+    assert (verdict.verdict, verdict.diagnosis.code) == ("false", "factor")
+
+
+def test_a_component_that_a_product_of_quaternions_lacks_has_the_name_of_its_place():
+    verdict = symrot.check("x = a1 b2 + b1 a2 + c1 d2 - d1 b2")
+    assert [offer.text for offer in verdict.repairs] == ["x = a1*b2 + b1*a2 + c1*d2 - d1*c2"]
+
+
 def test_a_step_with_names_that_the_reader_does_not_know_is_left_out_of_the_campaign():
     index, rest = Symbol("a_{k-2}", real=True), Symbol("b", real=True)
     step = SimpleNamespace(left=rest, right=rest + 1, hypotheses=(index - rest,))

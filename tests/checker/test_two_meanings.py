@@ -38,7 +38,7 @@ def test_raised_digits_after_a_bracket_are_no_name_beside_units(text, verdict):
 
 @pytest.mark.parametrize(("text", "verdict"), [
     ("(p q)* = q* p*", "true"), ("(p q)* = p* q*", "false"), ("q* v q = R^T v", "recognised"),
-    ("R(q) v = q v q⁻¹", "recognised"), ("a* b = b* a", "true"), ("z̄ = x - iy where z = x + iy", "true"),
+    ("R(q) v = q v q⁻¹", "recognised"), ("a* b = b* a", "true"), ("v' = q v q⁻¹", "recognised"), ("z̄ = x - iy where z = x + iy", "true"),
 ])  # fmt: skip
 def test_a_star_before_a_blank_may_be_a_conjugate(text, verdict):
     assert symrot.check(text, repair=False).verdict == verdict

@@ -301,7 +301,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
 def test_a_clock_that_is_too_coarse_is_said_to_be():
     """A torque function is called with the scene's times, so its motion cannot use a shifted clock."""
     driven = propagator(scene(GENERAL, ["0", "0", "omega_1/9"], 10**15), torque=lambda t, w, q: (0.0, 0.1, 0.0))
-    with pytest.raises(PropagationError, match=r"doubles lie 0\.125 s apart"):
+    with pytest.raises(PropagationError, match=r"doubles, which lie 0\.125 s apart"):
         driven(10**15 + np.array([0.0, 5.0]))
 
 

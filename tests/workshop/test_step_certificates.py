@@ -91,6 +91,13 @@ def test_intervals_alone_bound_rates_that_are_no_polynomials():
     assert not truncation._problem(quotient, method, list(bounds), box).leading
 
 
+def test_polynomials_with_too_many_terms_are_left_to_intervals(monkeypatch):
+    rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 100)))
+    exact = truncation_bounds(rates, method, box)
+    monkeypatch.setattr(truncation, "MOST_TERMS", 10)
+    assert max(truncation_bounds(rates, method, box).values()) > max(exact.values())
+
+
 def test_a_wrong_step_is_refuted():
     """With one wrong weight the method loses its order, is refused, and errs by more than the bound of the right one."""
     wrong = replace(RK4, weights={0: Fraction(1, 6), 1: Fraction(1, 3), 2: Fraction(1, 6), 3: Fraction(1, 3)})
@@ -201,8 +208,8 @@ def test_the_rates_in_a_certificate_are_those_of_the_scene():
 
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
-    ({"step": "dop853", "box": BOX}, "expected rk4 or taylor for bounds on a box"),
-    ({"step": "rk4", "objects": True}, "without objects"), ({"order": 3}, "expected a step as well"),
+    ({"step": "dop853", "box": BOX}, "expected 'rk4' or 'taylor' for bounds on a box"),
+    ({"step": "rk4", "objects": True}, "no objects and no rounding=False"), ({"order": 3}, "expected a step as well"),
     ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
 ])  # fmt: skip
 def test_impossible_requests_are_one_sentence(options, message):

@@ -14,13 +14,13 @@ QUATERNION, UNIT = ("qmul", "conjugate"), Node("call", "eye", (number(4),))
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas have products of quaternions or the unit matrix of Pauli's matrices."""
+    """Return whether formulas call a function for quaternions, or have ``eye(4)``, the 1 beside Pauli's matrices."""
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether a repair has the transpose of the imaginary unit, which nobody writes."""
+    """Return whether the sides of a proposed correction contain ``i^T``: nobody transposes the imaginary unit."""
     return Node("transpose", None, (Node("name", "i"),)) in [node for side in sides for _, node in walk(side)]
 
 

@@ -1,4 +1,7 @@
-"""Splitting formulas such as ``exp(i*x)`` into real and imaginary parts, as trees: equal formulas have equal parts."""
+"""Splitting formulas such as ``exp(i*x)`` into their real and imaginary parts, as trees.
+
+Two complex formulas are equal exactly if both their parts are; the engine then decides two equations of real formulas.
+"""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -38,27 +41,34 @@ MOST_FACTORS = 16
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
 
-    The letter is in an exponent of e or in exp(..), or all other factors of its product are numbers, sines and
-    cosines. A letter i or j in a sum ``x + i*y`` is the imaginary unit if the formulas contain the real part, the
-    imaginary part, the conjugate or the absolute value of a name or of a formula with this letter, or the name of a
-    complex number, such as z. A letter i or j is also the imaginary unit if it is the only letter (``i^2 = -1``),
-    if the formulas have a sum and its conjugate, or a power of ``x + i*y``, or if they have circular and hyperbolic
-    functions and the letter is inside one of these.
+    A letter i, j or I is the imaginary unit in ``e^(i x)`` and ``exp(i x)``, and in a product whose other factors are
+    numbers, sines and cosines, as in ``cos(x) + i*sin(x)``. Elsewhere only i and j can be, if one of these is true:
+
+    - a sum has the form ``x + i*y``, and some formula applies Re, Im, a conjugate or bars to a complex number, or has
+      a name such as z;
+    - it is the only letter, as in ``i^2 = -1``;
+    - a sum and its conjugate occur, or ``x + i*y`` in a product or power;
+    - both circular and hyperbolic functions occur, and the letter is in the argument of one of them.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
+    below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in LETTERS[: 2 if has_matrices else None]:  # cos(x)*I + (1 - cos(x))*n*n.T has the unit matrix
         for node in nodes:
             inside = _exponent(node)
             if inside is not None and (own := _letter_in(inside, letter)):
                 return own
-            if node.kind == "product" and (own := _factor_of_sines(node, letter)):
+            is_divisor = letter == "I" and node in below  # 2*I*cos(theta) has a moment of inertia
+            if node.kind == "product" and not is_divisor and (own := _factor_of_sines(node, letter)):
                 return own
     return next((own for letter in LETTERS[:2] if (own := _evident(trees, nodes, letter))), None)
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter that the other formulas show to be the imaginary unit; None if they do not."""
+    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show it to be the imaginary unit.
+
+    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do.
+    """
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
@@ -127,9 +137,10 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
     """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
 
-    A name such as z or w_1 is one if the formulas have the conjugate, the real or the imaginary part of such a
-    name; ``z_bar`` next to ``z`` is a conjugate if the formulas have an absolute value or a part. In formulas with
-    integrals or with other barred names, ``z_bar`` is a coordinate of a centre of mass.
+    Only z, w and zeta, with or without a number as in w_1, can be complex numbers. They are if the formulas have the
+    conjugate, the real part or the imaginary part of one of them, or have ``z_bar`` and also an absolute value, a
+    conjugate, Re or Im of anything. The result is empty for formulas with integrals or with other barred names: there
+    ``z_bar`` is a coordinate of a centre of mass.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]
@@ -182,10 +193,10 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return an equation of two columns (real part, imaginary part), one column for each side of a complex equation.
+    """Return a complex equation with each side as a column (real part, imaginary part).
 
-    A side that is a single name stays as it is: such an equation only names the other side, or says that the
-    imaginary part of the other side is zero.
+    If a side is a single name, as in ``z = exp(i*x)``, it stays as it is: it only gives the other side a name. The
+    other side becomes a column, or its real part alone if it has no imaginary part.
 
     Raises
     ------

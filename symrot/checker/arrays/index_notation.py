@@ -63,7 +63,10 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``(a × b)_i`` with epsilon and two summed indices that are not ``used``; None for a cross of formulas."""
+    """Return ``epsilon_ijk a_j b_k``, the component i of a cross product; j and k are letters that are not ``used``.
+
+    Return None if a factor of the cross product is no name, as in ``((a + b) × c)_i``.
+    """
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
     if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
@@ -75,7 +78,10 @@ def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | No
 
 
 def has_index_symbols(relation: Relation) -> bool:
-    """Return whether an equation has delta_ij or epsilon_ijk; :func:`written_out` leaves these only in conditions."""
+    """Return whether an equation has delta_ij or epsilon_ijk.
+
+    After :func:`written_out` only an equation that is no identity still has them, such as R_ik R_jk = delta_ij.
+    """
     return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
 
 
@@ -93,7 +99,8 @@ def _indices(node: Node) -> str:
 def _is_condition(left: Node, right: Node) -> bool:
     """Return whether an equation is no identity: it defines a quantity or restricts some, as R_ik R_jk = delta_ij does.
 
-    An identity has the same quantities on both sides, or zero on one side and a quantity twice on the other.
+    It counts as an identity if both sides have the same quantities; if one side is zero, and a quantity occurs twice
+    on the other, so that its terms can cancel; or if one side is a component v_i, for which the other is a formula.
     """
     own = [Counter(_quantities(side)) for side in (left, right)]
     if "sigma" in (names := {*own[0], *own[1]}) and names <= OF_PAULI:
@@ -107,7 +114,7 @@ def _is_condition(left: Node, right: Node) -> bool:
 
 
 def _is_component(side: Node, other: Node) -> bool:
-    """Return whether an equation gives a formula, without the quantity v, for the components v_i."""
+    """Return whether ``side`` is a component such as v_i and ``other`` a formula without v, which so defines v."""
     if not _indices(side) or _symbol(side):
         return False
     return str(side.value).rpartition("_")[0] not in {*_quantities(other)}
@@ -149,7 +156,10 @@ def _counts(term: Node) -> Counter[str]:
 
 
 def _counts_of_terms(integrand: Node) -> Counter[str]:
-    """Return the free indices of an integrand, each once; the sums in its terms are written out inside of it."""
+    """Return the free indices of an integrand, each counted once.
+
+    Its repeated indices are not counted: they are summed inside the integral.
+    """
     free = [_once(_counts(term)) for term in _terms(integrand)]
     return free[0] if len({frozenset(own) for own in free}) == 1 else sum(free, Counter())
 

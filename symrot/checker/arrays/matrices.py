@@ -1,7 +1,7 @@
 """Names that a text uses as matrices, columns or lengths of vectors, although it does not define them.
 
-``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` make matrices of 3 x 3 entries of the capital letters; a small letter
-with a transpose is a column.
+In ``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` the capital letters are read as 3 x 3 matrices whose entries are
+independent symbols. A small letter with a transpose, as in ``r^T r``, is read as a column.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence

@@ -73,7 +73,7 @@ def _is_product_of_matrices(node: Node) -> bool:
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
     """Return the tree of ``[A, B]``, or with the sign ``+`` of the anticommutator ``{A, B}``.
 
-    Return None unless both A and B have one of Pauli's matrices, since brackets hold two components otherwise.
+    Return None unless A and B each contain one of Pauli's matrices: otherwise ``[A, B]`` is a list of two components.
     """
     if not all(any(STEM.match(str(node.value)) for _, node in walk(part)) for part in (first, second)):
         return None
@@ -90,7 +90,10 @@ def _with_commutators(tree: Node) -> Node:
 
 
 def _with_traces(tree: Node) -> Node:
-    """Return a tree with the complex number for each trace, whose real part is half of the trace of the real matrix."""
+    """Return a tree in which each trace, of a complex 2 x 2 matrix M, is a formula of the real 4 x 4 matrix R for M.
+
+    It is ``tr(R)/2 + i tr(-i R)/2``, since each real entry of M occurs twice in R.
+    """
     args = tuple(map(_with_traces, tree.args))
     if tree.kind != "call" or tree.value != "trace":
         return replace(tree, args=args)
@@ -129,7 +132,10 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 
 
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
-    """Return a side as a matrix; a scalar side s becomes s times the unit matrix, and so does each entry of a list."""
+    """Return a side as a matrix: a scalar s becomes s times the unit matrix.
+
+    In a matrix that is written out, each scalar entry does.
+    """
     if side.kind == "call" and side.value == "Matrix":
         (rows,) = side.args
         return replace(

@@ -48,7 +48,9 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Return the quaternions in a relation whose names are not ``known``, that is, defined by the claim.
+    """Find the quaternions in a relation that the claim does not define.
+
+    Return their definitions, notes on them, and the relation with quaternion products.
 
     Parameters
     ----------
@@ -181,7 +183,10 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return the quaternions that only their positions show: q in ``v' = q v q``, and q in ``q' = 1/2 omega q``."""
+    """Return the names that must be quaternions because of the form of an equation, which has no sign of a conjugate.
+
+    This is q in ``v' = q v q`` and in ``q' = 1/2 omega q``; the result is empty for other forms.
+    """
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
@@ -200,10 +205,10 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return q if a side is ``q v q^-1`` or ``q v q_bar``, or reversed, and rotates a vector; otherwise None.
+    """Return q if a side is ``q v q^-1``, ``q v q_bar`` or one of these in reverse order, and rotates v; or None.
 
-    The other side tells: it is ``R v``, or another name with the same letter, such as ``v'``. If the letters were
-    numbers, they would commute, and nobody would write such a product.
+    It rotates v if the ``other`` side is ``R v``, or a name with the same first letter as v, such as ``v'``. The
+    letters are no numbers: numbers commute, so that nobody would write such a product.
     """
     if side.kind != "product" or len(side.args) != 3:
         return None
@@ -276,7 +281,7 @@ class _Products:
         return self.multiplied(node) if node.kind == "product" else node
 
     def is_rate(self, factor: Node) -> bool:
-        """Return whether a factor is an angular velocity, which is no quaternion of the text and no vector yet."""
+        """Return whether a factor is an angular velocity by its name, and so far neither a quaternion nor a vector."""
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:

@@ -86,10 +86,10 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether an equation sets a rate to zero, or gives the rate of a product by a letter that is not in it.
+    """Return whether an equation gives a time derivative that only a law of motion can give.
 
-    Examples are ``(I w)' = 0``, ``C w_3' = 0`` and ``(I w^2/2)' = I w alpha``. They hold by the laws of motion, not
-    as identities.
+    The derivative is zero, as in ``(I w)' = 0`` and ``C w_3' = 0``; or it is the derivative of a formula, and the other
+    side has a letter that this formula lacks, as alpha in ``(I w^2/2)' = I w alpha``. No such equation is an identity.
     """
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
@@ -240,7 +240,8 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 def _depends_on_own_letters(claim: Claim) -> bool:
     """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not.
 
-    A claim whose sides become equal if one letter replaces another, as ``x*cos(a) == x*cos(b)``, has the wrong letter.
+    Return False for ``x*cos(a) == x*cos(b)``, whose sides become equal if b replaces a: there one letter is probably a
+    slip, and the claim is false.
     """
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]

@@ -83,7 +83,7 @@ class TypedNotation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return a formula inside a derivative, with functions of time as ``f(t)``, since ``f`` would be a constant."""
+        """Return a formula inside ``diff(..)`` with ``f(t)`` for each function of time; a bare ``f`` is a constant."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 

@@ -41,12 +41,15 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     ):
         return ()
     letters = []
+    below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in OTHER_MEANINGS:
         used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
         calls = [node for node in nodes if node.kind == "call" and node.value in OF_NUMBERS]
         inside = [node for call in calls for _, node in walk(call)]
         waves = [node for node in nodes if _is_exponential(node, letter)]
-        waves += [node for node in nodes if node.kind == "product" and _is_imaginary(node, letter)]
+        waves += [
+            node for node in nodes if node.kind == "product" and node not in below and _is_imaginary(node, letter)
+        ]
         if used and not waves and not any((node.kind, node.value) == ("name", letter) for node in inside):
             letters.append(letter)
     return tuple(letters)

@@ -716,7 +716,10 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return the reading if a text is in SymPy syntax, else None; and the error if the text cannot be read as such."""
+    """Parse a text as SymPy syntax; return its reading (interpretation) and an error, one of which is None, or both.
+
+    (None, error): the text has no meaning in SymPy syntax. (None, None): it can be parsed, but uses other notation too.
+    """
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)
     except InputError as reason:

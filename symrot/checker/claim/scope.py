@@ -132,9 +132,10 @@ class Scope(ABC):
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Record a divisor of the text.
+        """Record that the text divides by a value.
 
-        Raise InputError if SymPy knows that it is zero; the exact engine refuses other zeros.
+        Raise InputError if SymPy sees at once that the value is zero. A zero that takes a proof, such as
+        ``sin(x)**2 + cos(x)**2 - 1``, is refused when the claim is decided.
         """
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")

@@ -74,7 +74,10 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return whether a sequence is stated, or is a usual one for the body: its second angle tilts the axis of a top."""
+    """Return False for a sequence that books do not use for a top, if the body is a top and no sequence is stated.
+
+    Books use ZXZ and ZYZ, whose second angle tilts the axis of the top.
+    """
     is_top = context.body is not None and context.body.kind.title in TOPS
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
@@ -147,9 +150,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether a formula, by its name, is for a radius through a point of the rim or surface.
+    """Return whether a formula, by its name, is for an axis along the radius to a point of the rim or surface.
 
-    Such an axis is hardly meant, unless the name of the quantity says which axis it is.
+    Hardly anybody means this axis by "about a point of the rim"; so return False if the ``quantity`` names its axis
+    itself, as I_x does.
     """
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
@@ -157,7 +161,8 @@ def _is_radial(name: str, quantity: str) -> bool:
 def is_component(name: str, quantity: str) -> bool:
     """Return whether a formula's name states the same component or axis as the index of a quantity does.
 
-    A quantity without an index may be any component, and so may the rate of an angle.
+    Also return True for a quantity without an index, and for the rate of an angle such as dphi: they rule out no
+    component.
     """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
@@ -172,7 +177,10 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula is for a certain place, while the context only says a pivot, which may be anywhere."""
+    """Return whether a formula for a body names a place, such as an end, that the context leaves open.
+
+    The context leaves it open with words such as "about the pivot": a pivot may be anywhere.
+    """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 

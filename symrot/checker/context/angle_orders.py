@@ -34,7 +34,7 @@ PLACE_OF_ANGLE = {
 class Order:
     """One assignment of letters to the angles of a sequence: ``places`` maps each letter to 0, 1 or 2.
 
-    ``guess`` says what in it is not stated; it is empty if everything is.
+    ``guess`` says in words which part of the assignment nothing states; it is empty if all of it is stated.
     """
 
     places: dict[str, int]
@@ -47,9 +47,10 @@ def has_order(sequence: str) -> bool:
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi are angles about x, y and z, as next to the rates p, q and r of an aircraft.
+    """Return whether phi, theta and psi are the roll, pitch and yaw of an aircraft: angles about x, y and z.
 
-    ``places`` maps letters to their places in the sequence. A sequence such as ZXZ has no such angles: return True.
+    ``places`` maps letters to their places (0, 1, 2) in the sequence. Return True for a sequence such as ZXZ, to which
+    this does not apply.
     """
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(
@@ -118,7 +119,10 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the order of three letters that needs no words: in ZYX, of phi, theta and psi, psi is the first angle."""
+    """Return the order in which three letters are the angles of a sequence if no words say so.
+
+    It is their usual order, but psi, theta, phi in ZYX, where psi is the yaw.
+    """
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 
 

@@ -101,8 +101,8 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
-    of the formula, such as "transposed".
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says in which form
+    the formula is meant, such as "transposed"; it is empty for the formula as it is.
     """
 
     known: Known
@@ -189,7 +189,10 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if "a tangent" of a disk or ring is taken to be normal to its plane."""
+    """Replace "true" by "recognised" if the words "about a tangent" were read as an unusual axis.
+
+    This is the axis through the rim of a disk or ring that is normal to its plane; a tangent may also lie in the plane.
+    """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
@@ -199,10 +202,9 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if a letter with an index, such as I_1, was assigned to another axis.
+    """Replace "true" by "recognised" if I_1, for example, was taken for a moment about another axis than the first.
 
-    Words about a letter, or about the moments of the body, may say for which axis it stands; then nothing is
-    replaced.
+    The verdict stays "true" if words about the letter, or about the moments of the body, say for which axis it stands.
     """
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
@@ -266,9 +268,10 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that match a claim if its context is changed.
+    """Return the known formulas that match a claim in another context, to tell the user which one the claim fits.
 
-    The context is tried without the place, then with the other frame; if nothing matches, it is left out.
+    First the place is left out of the context, then the other frame is tried, and at last the whole context is left
+    out. The first of these that gives a match counts.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -325,7 +328,7 @@ def _decided(claim: Claim, left: Node, right: Node) -> Decision:
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" if a claim's formula provably differs from its repair, otherwise None."""
+    """Return the decision "false" if a claim's formula provably differs from the correction in ``verdict``, or None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -366,14 +369,17 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the rotation matrices that may be meant from space to body."""
+    """Yield the transposes of those known formulas that are rotation matrices, each with the decision on the formula.
+
+    A formula maps body components to space components; the author of a claim may mean the inverse map.
+    """
     for candidate, decision in decisions:
         if candidate.known.name.startswith("rotation matrix"):
             yield replace(candidate, value=candidate.value.T, how="transposed"), decision
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula without a term or factor of the formula that the context states."""
+    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states."""
     context = claim.context
     own_meaning = context.meaning_of(quantity)
     if context.body is None and (own_meaning is None or own_meaning.body is None):
@@ -450,7 +456,10 @@ def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, .
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula with one fault, for an axis whose place nothing states; or None."""
+    """Return the verdict "doubtful" if correcting one fault makes a claim's formula one of the known ones; or None.
+
+    It is used if nothing states the place of the axis, so that none of these formulas is certainly meant.
+    """
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
         if repairs and repairs[0].cost < MOST_COSTLY and diagnosis.code != "two_faults":
@@ -527,9 +536,9 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the symbols of angle rates that an assignment does not use, each with the derivative that it means.
+    """Return the angle rates that an assignment of letters does not use: ``dphi`` with ``diff(phi(t), t)`` for it.
 
-    The result is empty if the claim writes no derivatives.
+    The result is empty if the claim itself has no derivatives.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
@@ -593,7 +602,10 @@ def _assignments(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can stand for a symbol of a known formula."""
+    """Return whether the letter ``name`` of a claim can stand for a ``symbol`` of a known formula.
+
+    A letter or symbol in ``pinned`` can only stand for the one of the same name.
+    """
     if symbol in pinned or name in pinned:
         return name == symbol
     meaning = context.meaning_of(name)

@@ -34,9 +34,9 @@ def with_lacking_letters(
 ) -> Verdict | None:
     """Return the verdict "doubtful" if a formula is a derived one without a term, or without a factor; otherwise None.
 
-    ``meant`` are the derived formulas whose names the context states word by word, and their values. A term is lacking
-    if the claim is what remains of such a formula when one of its other symbols is zero; a factor is lacking if their
-    quotient has none of the letters of the claim.
+    ``meant`` are the derived formulas whose names the context states word by word, and their values. The claim lacks a
+    term if it equals such a formula with zero for one of the symbols that the claim does not have: ``m*g*l`` for
+    ``m*g*l + k*x``. It lacks a factor if the quotient of the two has none of the letters of the claim.
     """
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:

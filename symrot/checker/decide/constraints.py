@@ -36,7 +36,8 @@ class Constraints:
     positive, nonnegative, negative, whole : frozenset of int
         Numbers of the generators that are assumed to be > 0, >= 0, < 0, or integers.
     products : tuple of PolyElement
-        Further polynomials that are >= 0: a root times the divisor under it, radicands of the text.
+        Further polynomials that are >= 0: formulas under even roots of the text, and ``r*b`` for each root
+        ``r = b*sqrt(a/b)`` of a quotient, which has the sign of its divisor b.
     free : frozenset of int
         Generators that may have any value that these polynomials and signs allow.
     unconstrained : tuple of PolyElement

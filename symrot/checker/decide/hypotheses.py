@@ -143,7 +143,10 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` exist near every point, which :func:`is_dense` can prove."""
+        """Return whether points that meet all ``needs`` are proven to exist near every point.
+
+        They are if all needs are nonzero divisors, and :func:`is_dense` is true of the formulas.
+        """
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
@@ -169,7 +172,10 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values that symbols, and angles which are symbols, have at a point."""
+        """Return the values of symbols at a point.
+
+        An angle theta is one of them: the point has values for its sine and cosine, of which atan2 gives theta.
+        """
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
             if place in point.values and is_leaf(atom):

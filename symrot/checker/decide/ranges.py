@@ -66,7 +66,10 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
-    """Return the symbols that are positive or nonnegative under conditions, each with a symbol that is so by itself."""
+    """Return the symbols that conditions make positive or nonnegative, each with a symbol to put in its place.
+
+    SymPy knows the sign of the new symbol: it has the same name and the assumption ``positive`` or ``nonnegative``.
+    """
     signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
     return {
         symbol: Symbol(symbol.name, **{"positive" if other.is_positive else "nonnegative": True})
@@ -385,9 +388,9 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges exclude the zero of a formula.
+        """Return whether ranges imply that a linear formula is not zero, so that ``formula != 0`` need not be printed.
 
-        If the zero is an end of a range that contains it, the end is removed from the range.
+        Where the zero is an end of a range, the end is removed first: with x != 0, ``x >= 0`` becomes ``x > 0``.
         """
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
@@ -407,7 +410,10 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether a product such as ``(x - 1)*(x + 1) >= 0`` excludes a zero by excluding all between two."""
+        """Return whether a condition on a product excludes the point ``bound.root``.
+
+        ``(x - 1)*(x + 1) >= 0`` excludes x = 0, since it excludes all points between -1 and 1.
+        """
         pair = [_bound(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
             return False
@@ -415,9 +421,9 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the range of cos(u) says nothing new.
+        """Return whether the other conditions imply the range of cos(u), so that it need not be printed.
 
-        It does not if it follows from -1 <= cos(u) <= 1 and from a nonzero sine or cosine of u/2.
+        A cosine is between -1 and 1. If cos(u/2) is nonzero, it is not -1; if sin(u/2) is nonzero, it is not 1.
         """
         if not isinstance(quantity, cos):
             return False

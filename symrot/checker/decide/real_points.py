@@ -284,7 +284,10 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Count the cost of factoring a polynomial, zero over the rationals; raise _DeadEnd beyond the budget."""
+        """Record the cost of factoring a polynomial of a degree; raise _DeadEnd if all costs exceed the budget.
+
+        Only a polynomial over an algebraic field, with irrational numbers, costs anything.
+        """
         if self.field != QQ:
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm

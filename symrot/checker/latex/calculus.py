@@ -50,8 +50,8 @@ class CalculusPart(NamesPart):
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
         r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
 
-        The exponent is None unless a power after the argument is taken for one of the whole call, as in
-        ``\sin\theta^2``.
+        The exponent is 2 if ``\sin\theta^2`` is read as (sin theta)^2; it is None if the power belongs to the argument
+        or if there is none.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
@@ -135,7 +135,7 @@ class CalculusPart(NamesPart):
             raise self.fail("one name between d and /dt, or \\frac{d}{dt}(..)")
         self.index += 2
         if self.order() != order:
-            raise self.fail(f"a derivative of order {order} both above and below the slash", item)
+            raise self.fail(f"the same order of the derivative above and below the slash, {order},", item)
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
@@ -145,7 +145,7 @@ class CalculusPart(NamesPart):
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
         variables = self.inside(fraction.below, self.variables)
         if len(variables) != order:
-            raise self.fail(f"a derivative of order {order} both above and below the line", fraction)
+            raise self.fail(f"the same order of the derivative above and below the line, {order},", fraction)
         if operand is None:
             operand = self.factor()
             if self.starts_factor() or self.at("/"):

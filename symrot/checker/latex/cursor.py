@@ -44,9 +44,10 @@ WRAPPERS = (
 
 @dataclass(frozen=True)
 class Names:
-    """The names that a claim declares: symbols, functions of time, matrices (``columns`` are some of them), and others.
+    """The names that a claim declares, by kind.
 
-    If ``implied``, undeclared names are allowed too.
+    ``matrices`` includes vectors; ``columns`` lists those matrices again that have one column. ``others`` are names of
+    no such kind. If ``implied``, undeclared names are allowed too.
     """
 
     symbols: Collection[str] = ()

@@ -254,9 +254,9 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse what is under a mark, with the subscript and primes after the mark, as in ``\dot{\mathbf{H}}_G``.
+        r"""Parse what is under a mark as if the subscript and primes after the mark were inside it too.
 
-        ``read`` parses it.
+        ``\dot{\mathbf{H}}_G`` is the rate of H_G. ``read`` is the method that parses the content of the mark.
         """
         scripts = []
         while script := self.script("_") or self.script("'"):

@@ -45,7 +45,7 @@ SEPARATORS = (",", ";", "\\\\")
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation read from LaTeX, its text in SymPy syntax, and those vectors in it whose components get names."""
+    """An equation read from LaTeX, its text in SymPy syntax, and the vectors for which component names are needed."""
 
     relation: Relation
     text: str

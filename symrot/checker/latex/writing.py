@@ -117,7 +117,7 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether all variables of a derivative are the time, and dots over a letter can show its order."""
+    """Return whether dots over a letter can show a derivative: it is by time alone, and of an order that has dots."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 

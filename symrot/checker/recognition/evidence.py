@@ -134,7 +134,10 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim I = .. names neither an axis nor a body, so that it may mean a body that symrot lacks."""
+    """Return whether a claim ``I = ..`` or ``J = ..`` may be right for a body that symrot has no formula for.
+
+    It may be if the letter has no index for an axis, the context states no body, and the fault is a number or term.
+    """
     is_bare = re.fullmatch("[IJ]", named.name) is not None
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
@@ -159,7 +162,10 @@ def misfit_of(name: str, known: str) -> float:
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether a known formula's name has one of several words; an angular velocity is not a velocity here."""
+    """Return whether a known formula's name has one of several words; "velocity" in "angular velocity" does not count.
+
+    If ``words`` is None, any name will do.
+    """
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
@@ -221,7 +227,10 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether the fault is the angle or function in a quaternion's component, as in beta_1 = e_1 sin(phi)."""
+    """Return whether a component of a quaternion has a wrong angle or function, as in beta_1 = e_1 sin(phi).
+
+    The right formula is e_1 sin(phi/2).
+    """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (
@@ -278,8 +287,9 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
     """Return whether a known formula agrees with the entries, axes and kinds of quantities in a claim's names.
 
-    An entry of a rotation matrix must have the same row and column, or exchanged ones. Of two parallel axes, the
-    one through the centre of mass stays so. A moment of inertia is no momentum, and p_phi is the momentum along z.
+    Examples of what must agree: R_12 can be entry 12 or 21 of a rotation matrix and no other; in the parallel-axis
+    theorem, I_G must be the moment about the centre of mass; p_phi must be the momentum along z; and a letter for a
+    moment of inertia must not stand for a momentum.
     """
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)

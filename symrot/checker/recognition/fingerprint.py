@@ -25,7 +25,7 @@ MOST_UNDEFINED = 3
 """The most of these points at which a formula is tried; one without a value there has none where letters are equal."""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
-MOST_CANCELLED = 12
+MOST_CANCELLED = 10
 """The most atoms of a formula whose fractions are cancelled, which takes seconds for the inverse of a tensor."""
 LARGEST_MULTIPLE = 400
 """The largest multiple of such a quarter, and the largest exponent, that is evaluated."""
@@ -156,7 +156,10 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with their entries in another order, with equal rows for multiples of a formula."""
+        """Return the signatures with their entries in another order, scaled so that a constant factor cancels.
+
+        So a formula and any multiple of it have the same rows.
+        """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
@@ -217,9 +220,10 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of an atom in a formula without a value where its other atoms are equal, as x/(A - B).
+    """Return the signature of an atom in a formula such as x/(A - B), which has no value where A and B are equal.
 
-    It is the sum of the values at points where one more atom differs from the others, for each such second atom.
+    Each point gives the atom one value, a second atom another, and all remaining atoms a third. The signature is the
+    sum of the formula's values over all choices of the second atom, without those where the formula has no value.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

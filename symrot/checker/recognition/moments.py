@@ -22,9 +22,10 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
     """Return whether a claim may mean a body with two equal moments of inertia, and so has only one letter for them.
 
-    ``letter`` stands for the moment ``absent`` too, and ``times`` times in the formula. Books give equal moments the
-    letter of the first: I_1 for I_1 = I_2, and I_2 for I_2 = I_3. The axis of symmetry is usually the third; another
-    axis is meant if the formula is written for equal moments: ``A p^2 + B (q^2 + r^2)``.
+    ``absent`` is the moment that the claim lacks, ``letter`` the letter that would stand for it too, and ``times``
+    counts how often this letter occurs. Books give equal moments the letter of the first: I_1 for I_1 = I_2, and I_2
+    for I_2 = I_3. The axis of symmetry may be any axis if the letter occurs once, since a formula such as
+    ``A p^2 + B (q^2 + r^2)`` is clearly meant for equal moments; otherwise it must be the third.
     """
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)

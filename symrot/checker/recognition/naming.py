@@ -340,7 +340,10 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
-    """Return whether exchanging m_1 and m_2 makes a formula a known one: then the other mass is the heavier one."""
+    """Return whether exchanging m_1 and m_2 makes a formula a known one.
+
+    Then the formula has no fault: its author only takes the other mass for the heavier one.
+    """
     tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
@@ -406,7 +409,7 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that are equal to an equation: the claim's side with the quantity, and ``tree``."""
+    """Return the known relations that say the same as ``side == tree``, with the side that has the claim's quantity."""
     difference = sum_of([named.side, negated(tree)])
     try:
         value = claim.with_definitions(claim.interpreter().read(difference))

@@ -86,7 +86,8 @@ class Near(NamedTuple):
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
 
-    There is none if the hypotheses make the formula equal to a known one at the test points.
+    The list is empty if the claim has hypotheses under which its own formula already equals a known one at the test
+    points, since then no change is needed.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -135,7 +136,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum, which the look-up by fingerprint may miss by its sign."""
+    """Return whether a formula has the root of a sum: its fingerprint may differ from an equal formula's by a sign."""
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 

@@ -86,6 +86,17 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
     }
 
 
+def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
+    """Return the name of a component that a product of numbered factors lacks: c2 next to a2, b2, d2 and c1."""
+    if re.fullmatch("[qp][0-3]", known) is None:
+        return None
+    beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
+    sibling = next((renaming[name] for name in renaming if name[0] == known[0] and renaming[name] is not None), None)
+    if beside is None or sibling is None or not NUMBERED.fullmatch(beside) or not NUMBERED.fullmatch(sibling):
+        return None
+    return beside[:-1] + sibling[-1]
+
+
 NUMBERED = re.compile("([a-z])_?([1-9])")
 """A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
 
@@ -121,7 +132,10 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that extend a partial one; also yield None at each step, to count the steps."""
+    """Yield the complete renamings that extend a partial one; also yield None at each step of the search.
+
+    By the Nones the caller counts the steps, to give up after too many.
+    """
     yield None
     if not order:
         used = sum(other is not None for other in renaming.values())
@@ -171,6 +185,8 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
             return other[:-1] + ORDER[known], True
         if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
             return known, True
+    if (of_product := _absent_of_product(known, renaming)) is not None:
+        return of_product, True
     if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
         return RATES[known], True
     axis = axes_of(known)

@@ -50,9 +50,9 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
-    """Yield an equation solved for each of the letters and rates ``atoms`` in which it, or their square, is linear.
+    """Yield an equation solved for each of ``atoms`` (letters and rates) that it has in one power only, 1 or 2.
 
-    The letter stays on a side of its own with its factor: ``I*w2 == I*w1 + M*t``.
+    The letter is isolated with its factor, not divided by it: ``I*w1 + M*t = I*w2`` becomes ``I*w2 == I*w1 + M*t``.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     for atom in atoms:
@@ -99,7 +99,10 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Solve ``sum of terms == 0`` for a letter; None if no term-by-term solution exists."""
+    """Solve ``sum of terms == 0`` for a letter.
+
+    Return None unless the letter is a factor of the terms that contain it, in all of them in the same power, 1 or 2.
+    """
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]
@@ -110,7 +113,10 @@ def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
 
 
 def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
-    """Return a term without its factor that is a letter or its square, and the exponent; None without such a factor."""
+    """Return (a term without its factor w or w^2, the exponent 1 or 2), where w is ``letter``.
+
+    Return None if the term has no such factor, or has the letter in another factor too.
+    """
     if term.kind == "neg":
         inner = _without(term.args[0], letter)
         return None if inner is None else (negated(inner[0]), inner[1])

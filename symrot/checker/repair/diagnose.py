@@ -245,7 +245,10 @@ class _Search:
 
 
 def _ranges(decision: Decision) -> str:
-    """Return the range, of angles or signs, in which a conditional formula holds; empty for any other decision."""
+    """Return the condition on signs or angles under which a formula holds, such as ``"0 <= x <= pi"``.
+
+    The text is empty if the decision is not "conditional", or needs more than signs.
+    """
     needed = decision.requires[:1]
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)
     return needed[0].text if needed and is_range else ""

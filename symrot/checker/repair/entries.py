@@ -77,7 +77,7 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
 
 
 def replacement(made: Node) -> Callable[[Node], Node]:
-    """Return a constant function: it returns ``made`` for any node, as the edit that :func:`replaced` applies."""
+    """Return a function that returns ``made`` for any node; :func:`replaced` then puts ``made`` in place of a part."""
     return lambda _: made
 
 
@@ -91,7 +91,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether a path leads to the same part in an edited tree as in the original tree."""
+    """Return whether an edit left the way to a part, and the part itself, unchanged."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

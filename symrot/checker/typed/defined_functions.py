@@ -55,5 +55,5 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 
 def instead(name: str) -> str:
-    """Return what a message expects instead of the inverse of a function in :data:`DISPUTED`."""
+    """Return the middle part of a message on the inverse of cot, sec or csc: what to write in its place, and why."""
     return f"{DISPUTED[name]} instead of the inverse of {name}, whose values for x < 0 differ from book to book,"

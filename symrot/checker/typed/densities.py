@@ -9,7 +9,7 @@ DENSITIES = ("rho", "sigma", "lambda", "mu")
 
 
 def over_mass(integrand: Node) -> Node | None:
-    """Return x² for the integrand ``rho x²``, to be integrated over the mass; None if no factor is a density.
+    """Return an integrand without its density, so that ``∫ rho x² dV`` becomes ``∫ x² dm``; None if it has no density.
 
     Examples
     --------

@@ -68,7 +68,7 @@ class Parser(PiecesPart):
     def head(self) -> Node | None:
         """Parse a left side such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if there is none.
 
-        It is one if the right side contains the arguments, or is a matrix.
+        ``R(φ)`` is a name with its arguments, and no product, if the right side contains φ or is a matrix.
         """
         name, texts = self.token(), [token.text for token in self.tokens]
         end = texts.index(")") if ")" in texts else 0
@@ -160,7 +160,10 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Parse ``×`` and the factor after it; put a cross product or, for scalars, the factor into ``factors``."""
+        """Parse ``×`` and the factor b after it, and add them to the ``factors`` before it.
+
+        If a vector is on either side, ``cross(a, b)`` replaces the last factor a. If not, b becomes one more factor.
+        """
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()

@@ -106,10 +106,11 @@ class PiecesPart(OpenFunctionsPart):
         )
 
     def is_conjugate_before_factor(self) -> bool:
-        """Return whether a star, tight to what it follows and before a blank and a name, is no product sign.
+        """Return whether a star such as the first one in ``q* v q`` marks a conjugate, and is no product sign.
 
-        It is the mark of a conjugate if the text has such a mark that no factor follows, as in ``(p q)* = q* p*``, or
-        if the same name follows after another one, as in ``q* v q``.
+        No blank may be before the star, and a blank and a name must be after it. Moreover, the name before the star
+        must occur again as the factor after next, as in ``q* v q``, or the text must have a star that no factor
+        follows, as in ``(p q)* = q* p*``.
         """
         if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
             return False

@@ -161,7 +161,10 @@ class Measured:
 
 @dataclass(frozen=True)
 class _Way:
-    """One way to read a text: the units with their other meaning, and whether ``a/2 m`` divides by all of ``2 m``."""
+    """One way to read a text with units.
+
+    ``meanings`` are the units with their less usual meaning; ``by_whole`` says whether ``a/2 m`` divides by ``2 m``.
+    """
 
     meanings: frozenset[str] = frozenset()
     by_whole: bool = True

@@ -146,7 +146,10 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether m and t mean mass and time: if units are stated, or a longer name has a conventional unit."""
+        """Return whether the claim is about physical quantities, so that its m and t mean mass and time.
+
+        It is if units are stated, or if a name of several letters has a conventional unit other than rad.
+        """
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 

@@ -3,7 +3,7 @@
 from symrot.proof.pages.book import book
 from symrot.proof.pages.detail import excerpt
 from symrot.proof.pages.html import html_document
-from symrot.proof.pages.latex import latex_document
+from symrot.proof.pages.latex import latex_book, latex_document
 from symrot.proof.pages.markdown import markdown
 
-__all__ = ["book", "excerpt", "html_document", "latex_document", "markdown"]
+__all__ = ["book", "excerpt", "html_document", "latex_book", "latex_document", "markdown"]

@@ -1,25 +1,26 @@
-"""Printer of derivations as complete LaTeX documents; a derivation always gives the same bytes."""
+"""Printer of derivations as LaTeX: a document for a page, a book for many; the same pages give the same bytes."""
 
 import re
+from collections.abc import Iterator, Mapping, Sequence
 
 from symrot.proof.notation.mathml import rows
 from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, repetitions, table_rows, units
 
-__all__ = ["latex_document"]
+__all__ = ["latex_book", "latex_document"]
 
 WIDTH = 62  # letters per line of a displayed formula
 
-LATEX_HEAD = r"""\documentclass[a4paper]{article}
-\usepackage[T1]{fontenc}
+PACKAGES = r"""\usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
 \IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{amsmath}
-\usepackage{booktabs,longtable}
+\usepackage{longtable}
 \usepackage{graphicx}
 \usepackage[margin=20mm]{geometry}
 \setcounter{MaxMatrixCols}{12}
 \setlength{\parindent}{0pt}
+\setlength{\parskip}{4pt plus 2pt}
 \setlength{\emergencystretch}{3em}
 \newsavebox{\displayed}
 % a display that is wider than the page is scaled to it
@@ -27,10 +28,62 @@ LATEX_HEAD = r"""\documentclass[a4paper]{article}
   \resizebox{\linewidth}{!}{\usebox{\displayed}}\else\usebox{\displayed}\fi\]}
 """
 
+DOCUMENT = (
+    "\\documentclass[a4paper]{article}\n"
+    + PACKAGES
+    + r"""% a link to another page is its title
+\newcommand{\pagelink}[2]{#2}
+"""
+)
+
+BOOK = (
+    "\\documentclass[a4paper,oneside]{book}\n"
+    + PACKAGES
+    + r"""\usepackage[hidelinks]{hyperref}
+% a link to another page of the book; the title alone if the book does not have that page
+\newcommand{\pagelink}[2]{\ifcsname r@#1\endcsname\hyperref[#1]{#2}\else#2\fi}
+"""
+)
+
 
 def latex_document(page: Page) -> str:
     """Return a page as a LaTeX document."""
-    parts = [LATEX_HEAD + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
+    head = DOCUMENT + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"
+    return "\n\n".join([head, *_body(page), r"\end{document}"]) + "\n"
+
+
+def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> str:
+    r"""Return pages as one LaTeX book with a table of contents and links between its pages.
+
+    LaTeX must run twice, because the table of contents and the links need the numbers of the first run.
+
+    Parameters
+    ----------
+    title, about : str
+        The title of the book, and a paragraph for the page of contents.
+    chapters : mapping of str to sequence of Page
+        Title of a part of the book -> its pages, in reading order.
+
+    Examples
+    --------
+    >>> r"\chapter{Spin}\label{spin}" in latex_book("Mechanics", "All of it.", {"First": [Page("spin", "Spin")]})
+    True
+    """
+    parts = [
+        BOOK + rf"\title{{{_prose(title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle",
+        _prose(about),
+        r"\tableofcontents",
+    ]
+    for chapter, pages in chapters.items():
+        parts.append(rf"\part{{{_prose(chapter)}}}")
+        for page in pages:
+            parts += [rf"\chapter{{{_prose(page.title)}}}\label{{{page.name}}}", *_body(page)]
+    return "\n\n".join([*parts, r"\end{document}"]) + "\n"
+
+
+def _body(page: Page) -> Iterator[str]:
+    """Yield the paragraphs of a page, without its title."""
+    parts: list[str] = []
     parts += [_figure(item) if isinstance(item, Figure) else _passage(item) for item in page.opening]
     if page.about:
         parts.append(_prose(page.about))
@@ -59,8 +112,7 @@ def latex_document(page: Page) -> str:
     parts += [
         rf"\section*{{{_prose(item.title)}}}" if isinstance(item, Section) else _passage(item) for item in page.closing
     ]
-    parts += [r"\medskip\hrule\medskip", _prose(footer(page)), r"\end{document}"]
-    return "\n\n".join(parts) + "\n"
+    yield from [*parts, r"\medskip\hrule\medskip", _prose(footer(page))]
 
 
 def _figure(figure: Figure) -> str:
@@ -72,12 +124,12 @@ def _figure(figure: Figure) -> str:
 
 def _table(table: Table, number: int) -> str:
     """Return a table in LaTeX, which may go over several pages."""
-    head, *rows = (" & ".join(map(_prose, cells)) + r" \\" for cells in table_rows(table, number))
+    head, *rows = (" & ".join(map(_prose, cells)) + r" \\[4pt]" for cells in table_rows(table, number))
     columns = "l" * (head.count(" & ") + 1)
-    body = "\n\\addlinespace\n".join(rows)
+    body = "\n".join(rows)
     return (
         "{\\footnotesize\\setlength{\\tabcolsep}{3pt}\\setlength{\\arraycolsep}{2pt}\n"
-        f"\\begin{{longtable}}{{{columns}}}\n{head}\n\\midrule\n\\endhead\n{body}\n\\end{{longtable}}}}"
+        f"\\begin{{longtable}}{{{columns}}}\n{head}\n\\hline\n\\endhead\n{body}\n\\end{{longtable}}}}"
     )
 
 
@@ -94,21 +146,36 @@ def _display(latex: str) -> str:
     return f"\\fitted{{\\begin{{aligned}}\n{body}\n\\end{{aligned}}}}"
 
 
-ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"\~{}"}
+ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "&": r"\&",
+    "%": r"\%",
+    "#": r"\#",
+    "_": r"\_",
+    "^": r"\^{}",
+    "~": r"\~{}",
+}
 
 
 def _prose(text: str) -> str:
     """Return Markdown prose as LaTeX: formulas in ``$`` stay as they are; code, links and emphasis are translated."""
-    linked = re.sub(r"\[([^\]$]+)\]\([^)]+\.md\)", r"\1", text)
-    pieces = re.split(r"(\$[^$]+\$|`[^`]+`)", linked)
-    return "".join(_piece(piece) for piece in pieces)
+    text = re.sub(r"`[^`]+`|\*\*(.+?)\*\*", lambda m: m[0] if m[1] is None else f"\1{m[1]}\2", text)
+    pieces = re.split(r"(\$[^$]+\$|`[^`]+`|\[[^\]]+\]\([^)]+\.md\))", text)
+    return "".join(_piece(piece) for piece in pieces).replace("\1", r"\textbf{").replace("\2", "}")
 
 
 def _piece(piece: str) -> str:
     if piece.startswith("$"):
         return piece
+    link = re.fullmatch(r"\[([^\]]+)\]\(([^)]+)\.md\)", piece)
+    if link:
+        return rf"\pagelink{{{link[2]}}}{{{_prose(link[1])}}}"
     code = piece.startswith("`")
     escaped = "".join(ESCAPES.get(letter, letter) for letter in piece.strip("`" if code else ""))
     if code:
-        return rf"\texttt{{{escaped}}}"
-    return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", escaped)
+        straight = escaped.replace("'", r"\textquotesingle{}").replace("--", "-{}-")  # as a shell needs them
+        return rf"\texttt{{{straight}}}"
+    raised = re.sub(r"\\\^\{\}(\d+)", r"\\textsuperscript{\1}", escaped)
+    return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", raised)

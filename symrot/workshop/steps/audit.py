@@ -22,7 +22,7 @@ from symrot.certificates.step_certificate import (
     rates_of,
 )
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
-from symrot.codegen.steps import Method
+from symrot.codegen.steps import Method, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
@@ -92,7 +92,10 @@ def audit_step(
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(f"{path}: expected the proof of the C text that symrot computes now, got another one")
-    report = [f"{name}: {len(texts)} hashes, C text of symrot_{name} and symrot_{name}f and batches = {method.formula}"]
+    report = [
+        f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
+        f"functions, computes the {method.formula}"
+    ]
     report.append(_of_scene(path, data, method))
     if "bounds" in data:
         progress("bounding ..")
@@ -121,7 +124,7 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
     values = [(symbol, float.fromhex(value)) for symbol, value in parameters]
     if values and texts[parameters_file(name)] != parameters_header(name, values):
         raise CertificateError(
-            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states"
+            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states, got others"
         )
     return texts
 
@@ -129,7 +132,8 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
 def _method(path: Path, data: Data) -> Method:
     step = data["step"]
     try:
-        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None)
+        jacobian = tuple(step.get("jacobian", ()))
+        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None, jacobian)
     except (InputError, KeyError, TypeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
     if step["order"] != method.order or data["method"] != method.formula:
@@ -139,12 +143,17 @@ def _method(path: Path, data: Data) -> Method:
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
     """Compare a certificate with what symrot derives for the shipped scene that it names; return the result."""
-    match = re.fullmatch(r"symrot emit (\S+) --step \w+(?: --order \d+)? --target c", str(data["regenerate"]))
+    options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
+    match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
-        return "the rates are only those that the certificate states, because symrot has no scene of that name"
+        return (
+            "the rates of the motion were not compared with a scene, because symrot has no scene of the name in the "
+            "certificate"
+        )
     order = method.order if method.name == "taylor" and method.order != ORDER else None
-    own = json.loads(step_text(scene, method.name, order).certificate())
+    jacobian = method.by if isinstance(method, WithDerivatives) else ()
+    own = json.loads(step_text(scene, method.name, order, jacobian).certificate())
     for section in SECTIONS:
         if section not in ("bounds", "trusted", "seal") and own[section] != data[section]:
             raise CertificateError(

@@ -21,6 +21,7 @@ def test_a_wrong_identity_of_complex_numbers_is_false(claim):
 
 
 def test_a_letter_i_may_be_a_quantity():
+    assert symrot.check("φ̇ = I_3 ω_3/(I cos θ)").verdict == "recognised"
     assert symrot.check("i = 3").verdict == "definition"
     assert symrot.check("i*(a + b) == i*a + i*b").notes == ()
 

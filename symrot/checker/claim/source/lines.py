@@ -10,8 +10,8 @@ from symrot.checker.claim.source.text import check_units, claim_of_relation, is_
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
-from symrot.checker.context.product_signs import sign_by_integral, with_sign
 from symrot.checker.latex.reader import latex_readings
+from symrot.checker.product_signs import sign_by_integral, with_sign
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
@@ -72,7 +72,10 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context in which they state a sign."""
+    """Move hypotheses such as ``I_xy = ∫ x y dm`` into the context; return the other hypotheses and the new context.
+
+    Such a hypothesis says only whether products of inertia are defined with the minus sign.
+    """
     others = []
     for source in assume:
         readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")

@@ -155,7 +155,10 @@ def claim_of_relation(
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Return ``I = n.T*I*n`` with the name I_n for the left side, a number, and a note; other equations unchanged."""
+    """Rename the left side of ``I = n.T*I*n`` to I_n, since it is a number and the I on the right a tensor.
+
+    Return the equation and a note on it; return any other equation unchanged, with an empty note.
+    """
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
@@ -167,7 +170,10 @@ def _with_own_name(relation: Relation) -> tuple[Relation, str]:
 
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
-    """Return hypotheses in which a name is written ``f(t)`` everywhere if one of the hypotheses has its rate."""
+    """Return hypotheses that agree on which names are functions of time.
+
+    If one hypothesis has ``f(t)`` or a time derivative of f, each f in the others becomes ``f(t)``.
+    """
     nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
@@ -337,7 +343,9 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
     """Return the units of a claim; raise InputError for an unknown unit, or for a name that the claim does not have."""
     for name, unit in units.items():
         if name not in known:
-            raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
+            raise InputError(
+                f"{place}: units: expected units only for names that occur in the claim, got {str(name)[:40]!r}"
+            )
         if not isinstance(unit, str):
             raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
         read_unit(unit, f"{place}: units: {name}")

@@ -37,7 +37,10 @@ def sign_by_integral(name: Node, formula: Node) -> str:
 
 
 def with_sign(context: Context, name: Node, sign: str) -> Context:
-    """Return a context in which a definition by an integral states the sign of products of inertia."""
+    """Return the context with one more statement: ``name`` is a product of inertia with or without the minus sign.
+
+    ``sign`` is "minus" or "plus", as :func:`sign_by_integral` returns it.
+    """
     quantity = WITH_MINUS if sign == "minus" else WITHOUT_MINUS
     meaning = Meaning((str(name.value),), quantity, written=(str(name.value),))
     return replace(context, meanings=(*context.meanings, meaning))

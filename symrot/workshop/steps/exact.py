@@ -1,0 +1,310 @@
+"""One time step of a motion in closed form as C99: the state after any dt, without truncation, heap or loop over time.
+
+The text consists of the C files by which symrot itself propagates the motion, and of a function with the arguments of a
+step. The constants of the motion are computed from the state in every call, in numbers of 31 digits, so that a step
+costs the same for any dt. The parameters p are those of the closed form: moments of inertia, pull, momentum of a rotor.
+"""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+from symrot.certificates.certificate import KernelUnderTest
+from symrot.closed_form.build import joined
+from symrot.closed_form.registry import exact_form
+from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
+from symrot.errors import CertificateError, InputError
+from symrot.planning.plan import make_plan
+from symrot.scene.scene import Scene
+from symrot.workshop.kernel_text import Bounds, KernelText, scene_kernel_name
+
+__all__ = ["ExactStepText"]
+
+STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
+SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
+Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
+
+
+class _Form(NamedTuple):
+    """What a closed form adds to the text of a step.
+
+    ``parameters`` holds (name, unit and meaning, value) of each number in p; ``tables`` are C definitions of constants;
+    ``arguments`` are the arguments of the C function that prepares a motion; ``named`` the body axes e1, e2, e3;
+    ``motion`` returns the motion from omega and quaternion, for parameters that are doubles.
+    """
+
+    library: str
+    title: str
+    derivation: str
+    parameters: tuple[tuple[str, str, Fraction], ...]
+    tables: tuple[str, ...]
+    arguments: tuple[str, ...]
+    named: tuple[int, int, int]
+    motion: Motions
+
+
+def _form(scene: Scene) -> _Form:
+    known = exact_form(scene)
+    if known is None or known.library not in _FORMS:
+        raise InputError(
+            f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step exact, "
+            "got a scene without such a closed form; the steps rk4, taylor and dop853 exist for it"
+        )
+    if not scene.body.principal.given_axes:
+        raise InputError(
+            f"{scene.name}: expected a body given along its principal axes for the step exact, got products of "
+            "inertia; the steps rk4, taylor and dop853 exist for it"
+        )
+    return _FORMS[known.library](scene, known.derivation)
+
+
+def _rounded(value: Fraction) -> Fraction:
+    """Return the double nearest to a number, as the C function receives it."""
+    return Fraction(float(value))
+
+
+def _moments(scene: Scene) -> list[Fraction]:
+    return [scene.body.inertia[i][i] for i in range(3)]
+
+
+def _free_body(scene: Scene, derivation: str) -> _Form:
+    from symrot.closed_form.free_body.motion import motion
+
+    moments = _moments(scene)
+    parameters = tuple((name, "kg m^2, principal moment", x) for name, x in zip("ABC", moments, strict=True))
+    rounded = [_rounded(x) for x in moments]
+    return _Form(
+        "free_body", "free body", derivation, parameters, (), ("moments", "rates", "attitude", "0", "0"), (0, 1, 2),
+        lambda omega, q: motion(rounded, omega, q),
+    )  # fmt: skip
+
+
+def _heavy_top(scene: Scene, derivation: str) -> _Form:
+    from symrot.closed_form.heavy_top.motion import Frame, motion
+
+    torque, moments = scene.torques[0], _moments(scene)
+    center, down = torque.vector("center_of_mass"), torque.vector("direction")
+    axis = next(i for i in range(3) if center[i])
+    pull, sign = torque.number("weight") * abs(center[axis]), 1 if center[axis] > 0 else -1
+    frame = Frame(axis, [-sign * x for x in down])
+    tables = [_table("space", frame.space)]
+    tables += [_table("body_axes", frame.axes)] if frame.axes else []
+    for name, quaternion in (("before", frame.before), ("after", frame.after)):
+        tables += [_table(name, [float(x) for x in quaternion])] if quaternion else []
+    rounded = [_rounded(x) for x in moments]
+    unit = [Fraction(sign * int(i == axis)) for i in range(3)]
+    return _Form(
+        "heavy_top", "symmetric heavy top", derivation,
+        (("A", "kg m^2, moment across the axis, about the fixed point", moments[axis - 1]),
+         ("C", "kg m^2, moment about the axis", moments[axis]),
+         ("pull", "N m, weight times the distance of the centre of mass", pull)),
+        tuple(tables), ("moments", "moments + 4", "rates", "attitude", "space", "body_axes" if frame.axes else "0"),
+        (frame.named[0], frame.named[1], frame.named[2]),
+        lambda omega, q: motion(rounded, _rounded(pull), unit, omega, q, down),
+    )  # fmt: skip
+
+
+def _gyrostat(scene: Scene, derivation: str) -> _Form:
+    from symrot.closed_form.gyrostat.motion import Gyrostat, motion
+
+    momentum, moments = scene.torques[0].vector("angular_momentum"), _moments(scene)
+    named = Gyrostat(moments, momentum).named
+    axis, rounded = named[2], [_rounded(x) for x in moments]
+    rotor = [_rounded(x) for x in momentum]
+    return _Form(
+        "gyrostat", "symmetric gyrostat", derivation,
+        (("A", "kg m^2, moment across the rotor", moments[axis - 1]), ("C", "kg m^2, moment about it", moments[axis]),
+         ("h", "kg m^2/s, angular momentum of the rotor relative to the body", momentum[axis])),
+        (_table("axes", [*map(float, named), 0.0]),), ("moments", "moments + 4", "rates", "attitude", "axes"),
+        (named[0], named[1], named[2]), lambda omega, q: motion(rounded, rotor, omega, q),
+    )  # fmt: skip
+
+
+_FORMS: Mapping[str, Callable[[Scene, str], _Form]] = {
+    "free_body": _free_body, "heavy_top": _heavy_top, "gyrostat": _gyrostat,
+}  # fmt: skip
+
+
+def _table(name: str, values: Sequence[float]) -> str:
+    return f"    static const double {name}[] = {{{', '.join(map(repr, values))}}};"
+
+
+class ExactStepText(KernelText):
+    """The C text of one step of a motion in closed form, with a header, the parameters of the scene and a test.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene whose motion has a closed form.
+    """
+
+    folders: ClassVar[Mapping[str, str]] = {}
+    has_certificate: ClassVar[bool] = False
+
+    def __init__(self, scene: Scene) -> None:
+        make_plan(scene)  # refuses tables and switches with their own sentences
+        self.scene, self.form = scene, _form(scene)
+        self.name = f"{scene_kernel_name(scene.name).removesuffix('_rates')}_exact_step"
+
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
+        if bounds:
+            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
+        return self._source, self._header
+
+    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
+        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
+        values = [(name, float(value)) for name, _, value in self.form.parameters]
+        parameters = {parameters_file(self.name): parameters_header(self.name, values)}
+        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
+
+    def _other(self, target: str) -> str:
+        raise InputError(f"step: expected the target c for the step exact, got {target}")
+
+    @property
+    def numpy(self) -> str:
+        """Raise InputError: an exact step exists in C only."""
+        return self._other("numpy")
+
+    @property
+    def js(self) -> str:
+        """Raise InputError: an exact step exists in C only."""
+        return self._other("js")
+
+    @property
+    def jax(self) -> str:
+        """Raise InputError: an exact step exists in C only."""
+        return self._other("jax")
+
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Raise CertificateError: an exact step has no certificate."""
+        raise CertificateError(f"{self.name}: expected a kernel or a step rk4, taylor or dop853; exact steps have no "
+                               "certificate, only a test")  # fmt: skip
+
+    def _declaration(self, real: Real) -> str:
+        count, c = len(self.form.parameters), real.type
+        return f"int symrot_{self.name}{real.suffix}({c} t, const {c} x[7], const {c} p[{count}], {c} dt, {c} next[7])"
+
+    @property
+    def _banner(self) -> list[str]:
+        return [
+            "/*",
+            f" * {self.name}: one exact time step of the scene {self.scene.name!r}, a {self.form.title}.",
+            " *",
+            " * in   t        s      not used: the equations do not contain the time",
+            " * in   x[7]            omega_1, omega_2, omega_3 in rad/s, body components; q0 .. q3, body to space",
+            f" * in   p[{len(self.form.parameters)}]            of the scene: {self.name}_parameters.h",
+            *(f" *        {name:<6} {meaning}" for name, meaning, _ in self.form.parameters),
+            " * in   dt       s      size of the step, of either sign",
+            " * out  next[7]         the state at t + dt, with a quaternion of norm 1; may be x",
+            " * Returns 0; 1 for numbers outside the domain, 2 if the compiler breaks the arithmetic; then next is",
+            " * NaN.",
+            " *",
+            " * Domain: positive moments, finite rates, a quaternion that is not zero.",
+            " * Cost: the same for every dt; no heap, no state between calls.",
+            f" * Derivation: derivations/{self.form.derivation}.md",
+            " * Compile with -std=c99 -ffp-contract=off, without -ffast-math.",
+            f" * Generated by `symrot emit {self.scene.name} --step exact --target c`; do not edit.",
+            " */",
+        ]
+
+    @cached_property
+    def _header(self) -> str:
+        guard = f"SYMROT_{self.name.upper()}_H"
+        return "\n".join([
+            *self._banner, f"#ifndef {guard}", f"#define {guard}", "#ifdef __cplusplus", 'extern "C" {', "#endif", "",
+            *(f"{self._declaration(real)};" for real in (DOUBLE, FLOAT)), "",
+            "#ifdef __cplusplus", "}", "#endif", "#endif",
+        ]) + "\n"  # fmt: skip
+
+    @cached_property
+    def _source(self) -> str:
+        form = self.form
+        library = joined(form.library, f"{form.library}_at")
+        library = re.sub(rf"\bsymrot_{form.library}_(prepare|length|at)\b", rf"symrot_{self.name}_\1", library)
+        count = len(form.parameters)
+        factors = [(name, after) for name, after in (("before", False), ("after", True))
+                   if any(f" {name}[]" in table for table in form.tables)]  # fmt: skip
+        product = [
+            "", "static void product(const double a[4], const double b[4], double c[4])", "{",
+            "    const double d[4] = {a[0]*b[0] - a[1]*b[1] - a[2]*b[2] - a[3]*b[3],",
+            "        a[0]*b[1] + a[1]*b[0] + a[2]*b[3] - a[3]*b[2],",
+            "        a[0]*b[2] - a[1]*b[3] + a[2]*b[0] + a[3]*b[1],",
+            "        a[0]*b[3] + a[1]*b[2] - a[2]*b[1] + a[3]*b[0]};",
+            "    for (int i = 0; i < 4; ++i)", "        c[i] = d[i];", "}",
+        ] if factors else []  # fmt: skip
+        lines = [
+            *self._banner, f'#include "{self.name}.h"', library.rstrip(), *product, "", self._declaration(DOUBLE), "{",
+            *form.tables, "    double q[4] = {x[3], x[4], x[5], x[6]};",
+            *(f"    product({'q, after' if after else 'before, q'}, q);" for _, after in factors),
+            f"    const double moments[{2*count}] = {{{', '.join(f'p[{i}], 0.0' for i in range(count))}}};",
+            f"    const double rates[6] = {{{', '.join(f'x[{i}], 0.0' for i in form.named)}}};",
+            "    const double attitude[8] = {q[0], 0.0, q[1], 0.0, q[2], 0.0, q[3], 0.0};",
+            f"    {form.library} motion;", f"    const int status = symrot_{self.name}_prepare("
+            f"{', '.join(form.arguments)}, &motion);",
+            "    (void)t;", "    if (status)", "        for (int i = 0; i < 7; ++i)", "            next[i] = NAN;",
+            "    else", f"        symrot_{self.name}_at(&motion, 1, &dt, next, next + 3);", "    return status;",
+            "}", "",
+            self._declaration(FLOAT), "{", f"    double state[7], numbers[{count}];",
+            "    for (int i = 0; i < 7; ++i)", "        state[i] = x[i];",
+            f"    for (int i = 0; i < {count}; ++i)", "        numbers[i] = p[i];",
+            f"    const int status = symrot_{self.name}(t, state, numbers, dt, state);",
+            "    for (int i = 0; i < 7; ++i)", "        next[i] = (float)state[i];", "    return status;", "}",
+        ]  # fmt: skip
+        return "\n".join(lines) + "\n"
+
+    @cached_property
+    def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
+        """Test vectors: (state, size, state after the step), from the motion with exact constants."""
+        vectors = []
+        start = [float(x) for x in (*self.scene.initial.omega_b, *self.scene.initial.quaternion)]
+        for place, share in enumerate(SHARES):
+            state = [
+                x + (place + i % 2) / 64 * (max(map(abs, start[:3])) or 1.0) * (i < 3) for i, x in enumerate(start)
+            ]
+            state[3 + place] += 0.25
+            omega, q = [Fraction(x) for x in state[:3]], [Fraction(x) for x in state[3:]]
+            dt = float(share) / (sum(x * x for x in state[:3]) ** 0.5 or 1.0)
+            rates, attitudes = self.form.motion(omega, q).evaluate([dt])
+            vectors.append((state, dt, [*rates[0].tolist(), *attitudes[0].tolist()]))
+        return vectors
+
+    @cached_property
+    def _test(self) -> str:
+        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+
+        def table(declared: str, values: Any) -> str:
+            rows = ", ".join(
+                "{" + ", ".join(map(repr, row)) + "}" if isinstance(row, list) else repr(row) for row in values
+            )
+            return f"static const double {declared} = {{{rows}}};"
+
+        name, count = f"symrot_{self.name}", len(self.form.parameters)
+        checks = []
+        for real, tolerance in ((DOUBLE, "4e-15"), (FLOAT, "2e-5")):
+            checks += [
+                f"static int check{real.suffix}(void)", "{",
+                f"    {real.type} x[7], next[7], p[{count}];",
+                f"    for (int i = 0; i < {count}; ++i)", f"        p[i] = ({real.type}){name}_parameters[i];",
+                f"    for (int k = 0; k < {len(SHARES)}; ++k) {{", "        double rate = 0;",
+                "        for (int i = 0; i < 7; ++i)", f"            x[i] = ({real.type})starts[k][i];",
+                "        for (int i = 0; i < 3; ++i)", "            rate = fmax(rate, fabs(ends[k][i]));",
+                f"        if ({name}{real.suffix}(0, x, p, ({real.type})sizes[k], next))", "            return 1;",
+                "        for (int i = 0; i < 7; ++i)",
+                f"            if (!(fabs(next[i] - ends[k][i]) <= {tolerance}*(i < 3 ? rate : 1.0)))",
+                "                return 1;", "    }", "    return 0;", "}", "",
+            ]  # fmt: skip
+        return "\n".join([
+            f"/* Test of {self.name}: returns 0 if double and float agree with the motion of exact constants. */",
+            "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"',
+            f'#include "{parameters_file(self.name)}"', "",
+            table(f"starts[{len(SHARES)}][7]", [start for start, _, _ in self._vectors]),
+            table(f"sizes[{len(SHARES)}]", [dt for _, dt, _ in self._vectors]),
+            table(f"ends[{len(SHARES)}][7]", [after for _, _, after in self._vectors]), "", *checks,
+            "int main(void)", "{", "    const int failed = check() || checkf();",
+            f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with the motion");',
+            "    return failed;", "}",
+        ]) + "\n"  # fmt: skip

@@ -1,0 +1,60 @@
+"""Steps with their derivatives: exact derivatives, certificates that prove them, and the C test that compares them."""
+
+import json
+import subprocess
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from symrot.certificates.step_certificate import step_certificate
+from symrot.cli.main import main
+from symrot.codegen.steps import RK4, WithDerivatives
+from symrot.errors import CertificateError, InputError
+from symrot.workshop.step_text import step_text
+from tests.needs import needs_compiler
+
+SCENE = "tumbling_prism"
+
+
+@pytest.mark.parametrize(("step", "order"), [("rk4", None), ("taylor", 3)])
+def test_derivatives_are_those_of_the_step(step, order):
+    """In exact fractions, difference quotients over 1e-30 differ by less than 1e-25."""
+    plain, full = step_text(SCENE, step, order)._program, step_text(SCENE, step, order, ["x", "p", "dt"])._program
+    inputs = [name for a in plain.signature.arguments if a.role == "in" for name, *_ in a.components]
+    values = {name: Fraction(number + 1, 7) for number, name in enumerate(inputs)}
+    results, at = full.evaluate(values, number=Fraction), plain.evaluate(values, number=Fraction)
+    assert {name: results[name] for name in at} == at
+    small = Fraction(1, 10**30)
+    for variable in inputs[1:]:
+        moved = plain.evaluate(values | {variable: values[variable] + small}, number=Fraction)
+        for name, value in at.items():
+            assert abs((moved[name] - value) / small - results[f"{name}_by_{variable}"]) < Fraction(1, 10**25)
+
+
+@needs_compiler
+def test_a_step_with_derivatives_is_certified_and_tested(tmp_path, capsys):
+    assert main(["emit", SCENE, "--step", "rk4", "--jacobian", "omega,q0", "-o", str(tmp_path)]) == 0
+    name = f"{SCENE}_rk4_step_by_omega_by_q0"
+    files = [str(tmp_path / f"{name}{end}.c") for end in ("", "_test")]
+    subprocess.run(["cc", "-std=c99", "-O1", "-ffp-contract=off", *files, "-lm", "-o", tmp_path / "check"], check=True)
+    assert subprocess.run([tmp_path / "check"], capture_output=True, check=True).stdout.endswith(b"40 digits\n")
+    assert main(["audit", str(tmp_path / f"{name}.cert.json")]) == 0
+    assert "its derivatives by omega, q0" in capsys.readouterr().out
+
+
+def test_a_wrong_derivative_is_not_certified():
+    """The C text has the derivatives in another order than the formula."""
+    step = step_text(SCENE, "rk4", None, ["omega"]).certified
+    with pytest.raises(CertificateError, match="its derivatives by omega_2"):
+        step_certificate(replace(step, method=WithDerivatives(RK4, ("omega_2", "omega_1", "omega_3"))))
+
+
+def test_the_certificate_names_the_inputs():
+    assert json.loads(step_text(SCENE, "rk4", None, ["omega"]).certificate())["step"]["jacobian"] == ["omega"]
+
+
+@pytest.mark.parametrize("jacobian", [["mass"], ["omega", "omega"], [""]])
+def test_unknown_inputs_are_refused(jacobian):
+    with pytest.raises(InputError, match="jacobian: expected"):
+        step_text(SCENE, "rk4", None, jacobian)
