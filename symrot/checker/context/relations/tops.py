@@ -17,7 +17,7 @@ from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
 from symrot.checker.context.bodies import TOPS
 from symrot.checker.context.context import Context
-from symrot.checker.context.substitution import Substitution
+from symrot.checker.context.relations.substitution import Substitution
 from symrot.exact.printing import as_text
 from symrot.kinematics.euler import rate_jacobian
 
