@@ -49,7 +49,9 @@ def _dop853(order: int) -> RungeKutta:
     )  # fmt: skip
 
 
-STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {"rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853}
+STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
+    "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
+}  # fmt: skip
 """The methods of emitted steps, by name; each is made from the order of the Taylor series."""
 
 
