@@ -548,7 +548,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
             verdict = replace(under_name, notes=(*under_name.notes, note))
         elif verdict.verdict == "false" and _names(left) and not _names(right) - {"pi"} and _depends_on_letters(claim):
             letters = " and ".join(sorted(_names(left) - {"pi"}))
-            verdict = Verdict("definition", reason=f"it has numbers for {letters}, which nothing here gives")
+            verdict = Verdict(
+                "definition",
+                reason=f"the equation holds only for certain values of {letters}, and the text does not state any",
+            )
         decided.append(verdict)
     return decided
 

@@ -298,7 +298,9 @@ class Trajectory(MotionSamples):
         if isinstance(times, bool) or not isinstance(times, int | np.integer):
             return self.at(times)
         if times < 2 or not len(self):
-            raise InputError(f"times: expected 2 samples or more, of a trajectory that has samples itself, got {times}")
+            raise InputError(
+                f"times: expected 2 or more as the number of new samples, and a trajectory with samples, got {times}"
+            )
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
     @cached_property

@@ -182,7 +182,9 @@ def _place(scene: _Scene, key: str) -> Place:
         return places[0]
     if places:
         listed = " or ".join(map(_text, places))
-        raise InputError(f"{key}: expected the name of one value of the scene, got a name of two; write {listed}")
+        raise InputError(
+            f"{key}: expected the name of one value of the scene, got a name that two values share; write {listed}"
+        )
     known = [*TABLES[3:], *SHORT, *RATES, "principal", *TENSOR, *_names(scene)]
     hint = nearest(key, known)
     raise InputError(

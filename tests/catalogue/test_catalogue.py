@@ -286,6 +286,15 @@ def test_a_command_can_be_copied_from_latex():
     assert r"check \textquotesingle{}x == 1\textquotesingle{} -{}-given" in text and r"m\textsuperscript{2}" in text
 
 
+def test_a_proof_on_the_board_fits_on_a_screen(derived):
+    for page in derived.values():
+        for number, step in enumerate(page.steps, 1):
+            if step.board:
+                detail = page.part(number, True).latex().split(r"\section*{In detail}")[1]
+                lines = detail.split(r"\paragraph{Units}")[0].split(r"\medskip")[0].strip().count("\n") + 1
+                assert lines <= 33, (page.name, number)
+
+
 def test_links_lead_to_pages(printed):
     for name, text in printed.items():
         for target in re.findall(r"\]\(([^)#]+)\)", text):

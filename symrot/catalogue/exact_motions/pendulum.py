@@ -146,7 +146,8 @@ def _spherical(d: Derivation) -> None:
     energy = 2 * W * ARM * (U1 + U2 + highest)
     d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
     d.step(
-        r"The cubic polynomial of energy and momentum has these three zeros if $p_\phi^2$ has the value below.",
+        r"The cubic polynomial of energy and momentum has the zeros $u_1$, $u_2$ and $u_3$ if $p_\phi^2$ has the value "
+        "below.",
         energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,
         cubic(u).subs(U3, highest),
         because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",

@@ -230,7 +230,10 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the smallest and largest values of unknowns, by their signs and by ``sum of d*x^2 = constant``."""
+        """Return bounds (low, high) of unknowns by their numbers in the ring.
+
+        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1.
+        """
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)

@@ -92,7 +92,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of two edits that together have the whole effect.
+    """Yield the indices of each two edits that together have the whole effect: they make both sides equal.
 
     ``rest`` returns the effect that remains for the second edit: the difference or the quotient.
     """
