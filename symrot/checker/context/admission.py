@@ -192,7 +192,7 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
     """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
 
     ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed
-    symbols; any other letter of the claim is the symbol of the same name.
+    symbols; any other letter of the claim stands for the symbol of the same name.
     """
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]

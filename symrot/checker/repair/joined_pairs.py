@@ -1,8 +1,9 @@
 """Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
 
-At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
-So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
-factors multiply in the same way. Each single edit is evaluated once; a look-up gives the edits that complete it.
+At a point, an edit of one term changes the difference of the sides by an amount that does not depend on edits of other
+terms. So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of
+edited factors multiply in the same way. Each single edit is evaluated once; a look-up of the amount that is left gives
+the edits that complete it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
