@@ -76,7 +76,7 @@ def test_the_emitted_test_passes(tmp_path):
         ("spin_up", {}, "the steps rk4, taylor and dop853 exist"),
         ("gyrostat", {}, "without such a closed form"),
         ("friction_wheel", {}, "without switches"),
-        ("tumbling_prism", {"target": "js"}, "expected the target c"),
+        ("tumbling_prism", {"target": "js"}, "expected the target 'c'"),
         ("tumbling_prism", {"order": 4}, "order: expected none"),
         ("tumbling_prism", {"jacobian": ["x"]}, "jacobian: expected none"),
     ],
