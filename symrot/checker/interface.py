@@ -63,8 +63,8 @@ def check(
     Parameters
     ----------
     left : str, Expr or Matrix
-        The whole claim as text, ``"left == right"`` in SymPy syntax, as typed, or in LaTeX (with a backslash): names
-        are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
+        The whole claim as text, ``"left == right"`` in SymPy syntax, as people type it, or in LaTeX (with a backslash):
+        names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy value.
     assume : sequence

@@ -163,7 +163,8 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
     """Return the verdict, or "definition" for a text that has both letters and numbers with units.
 
-    Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
+    Such a text is an equation for its letters and no identity. In ``F = m a = 2 kg * 3 m/s^2 = 6 N``, the end without
+    letters is decided.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")

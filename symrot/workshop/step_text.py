@@ -39,7 +39,7 @@ SIZES = (Fraction(1, 1024), Fraction(1, 64), Fraction(-1, 256))  # sizes of the 
 DIGITS = 40
 
 
-def _dop853(order: int) -> Method:
+def _dop853(order: int) -> RungeKutta:
     """Return the method of order 8 of Dormand and Prince's pair, without its estimates of the error."""
     stages = range(1, 13)
     return RungeKutta(
@@ -49,7 +49,9 @@ def _dop853(order: int) -> Method:
     )  # fmt: skip
 
 
-STEPS: Mapping[str, Callable[[int], Method]] = {"rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853}
+STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
+    "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
+}  # fmt: skip
 """The methods of emitted steps, by name; each is made from the order of the Taylor series."""
 
 

@@ -10,7 +10,7 @@ from symrot.proof.pages.parts import MANY, remarks, repetitions
 from symrot.symbols import omega_b, theta, x
 
 OMEGA = Matrix(omega_b)
-LONGEST = 40  # lines of LaTeX
+LONGEST = 33  # lines of LaTeX: a screen
 
 
 @pytest.fixture

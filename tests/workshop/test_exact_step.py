@@ -8,7 +8,7 @@ import pytest
 
 import symrot
 from symrot.cli.main import main
-from symrot.errors import InputError
+from symrot.errors import CertificateError, InputError
 from symrot.workshop.steps.exact import ExactStepText
 from tests.needs import needs_compiler
 
@@ -68,6 +68,13 @@ def test_the_emitted_test_passes(tmp_path):
         ["cc", "-std=c99", "-O0", "-ffp-contract=off", *files, "-lm", "-o", "check"], cwd=tmp_path, check=True
     )
     assert b"agrees" in subprocess.run([tmp_path / "check"], capture_output=True, check=True).stdout
+
+
+def test_exact_steps_have_no_certificate(capsys):
+    assert main(["certify", "tumbling_prism", "--step", "exact"]) == 2
+    assert "exact steps have a test and no certificate" in capsys.readouterr().err
+    with pytest.raises(CertificateError, match="only a test"):
+        _ = symrot.emit("tumbling_prism", step="exact").certificate
 
 
 @pytest.mark.parametrize(

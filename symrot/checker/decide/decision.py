@@ -255,7 +255,8 @@ class _ClaimCase(Case):
     def lacks_evidence(self) -> bool:
         """Whether the stages so far leave the claim open.
 
-        They do if no counterexample is known, and there are hypotheses or no condition on signs suffices.
+        They do if no counterexample is known, and either the claim has hypotheses, or no condition on the signs of its
+        roots is known that makes it true.
         """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -527,7 +528,7 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return, by text, the formulas that must be nonzero, without those that never vanish or are powers of others.
+    """Return formulas that must be nonzero, by their texts, without those that never vanish or are powers of others.
 
     ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
     """

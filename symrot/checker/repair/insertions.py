@@ -81,7 +81,10 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield the repair of a side that adds its missing term to each wrong entry, if each entry lacks only one term."""
+    """Yield one repair of a side: to each wrong entry it adds the term that this entry lacks.
+
+    Nothing is yielded if an entry lacks more than one short term.
+    """
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
         piece = at(made, path)

@@ -170,7 +170,10 @@ def _with_own_name(relation: Relation) -> tuple[Relation, str]:
 
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
-    """Return hypotheses in which a name is written ``f(t)`` everywhere if one of the hypotheses has its rate."""
+    """Return hypotheses that agree on which names are functions of time.
+
+    If one hypothesis has ``f(t)`` or a time derivative of f, each f in the others becomes ``f(t)``.
+    """
     nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
