@@ -237,7 +237,7 @@ def _derive(options: Namespace) -> int:
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of NAMEs, --all and --check (see `symrot derive --help`)")
     if len(options.name) > 1 and (options.directory is None or options.step is not None):
-        raise InputError("derive: expected a folder, -o DIR, for several NAMEs, and no --step")
+        raise InputError("derive: expected a folder, -o DIR, and no --step with several NAMEs")
     if options.step is None and options.detail:
         raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
     if options.step is not None and not options.name:

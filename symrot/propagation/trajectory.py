@@ -346,7 +346,9 @@ class Trajectory(MotionSamples):
         if not np.isfinite(times).all():
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if self.has_external_torque or self._propagator is None:
-            raise InputError("transition: expected torques with formulas, got a motion under a torque without one")
+            raise InputError(
+                "transition: expected torques with formulas, got a motion under a torque without a formula"
+            )
         return self._propagator.transition(self.scene, times[0], times[1])
 
     @cached_property

@@ -99,7 +99,7 @@ def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian:
 def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelText:
     if order is not None or jacobian:
         option = "order" if order is not None else "jacobian"
-        raise InputError(f"{option}: expected none for the step exact, got {order or ', '.join(jacobian)}")
+        raise InputError(f"{option}: expected no value for the step 'exact', got {order or ', '.join(jacobian)}")
     from symrot.workshop.steps.exact import ExactStepText
 
     return ExactStepText(scene)

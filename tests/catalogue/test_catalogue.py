@@ -324,7 +324,7 @@ def test_one_step_on_the_command_line(form, start, capsys):
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
         (["heavy_top", "--detail"], "expected --step N"),
-        (["heavy_top", "poinsot"], "expected a folder, -o DIR, for several NAMEs"),
+        (["heavy_top", "poinsot"], "expected a folder, -o DIR, and no --step"),
         (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),

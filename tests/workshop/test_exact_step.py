@@ -83,9 +83,9 @@ def test_exact_steps_have_no_certificate(capsys):
         ("spin_up", {}, "the steps rk4, taylor and dop853 exist"),
         ("gyrostat", {}, "without such a closed form"),
         ("friction_wheel", {}, "without switches"),
-        ("tumbling_prism", {"target": "js"}, "expected the target c"),
-        ("tumbling_prism", {"order": 4}, "order: expected none"),
-        ("tumbling_prism", {"jacobian": ["x"]}, "jacobian: expected none"),
+        ("tumbling_prism", {"target": "js"}, "expected the target 'c'"),
+        ("tumbling_prism", {"order": 4}, "order: expected no value"),
+        ("tumbling_prism", {"jacobian": ["x"]}, "jacobian: expected no value"),
     ],
 )
 def test_what_has_no_exact_step_is_refused(scene, options, message):

@@ -39,9 +39,10 @@ def derive() -> Derivation:
     others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
     d.section("How close to gimbal lock, for the other sequences")
     d.tabulate(
-        r"The cosine $c$ of the angle between the first and the last axis decides: the eigenvalues of "
-        r"$B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every angle. The last column has "
-        "the sequences without gimbal lock at any attitude where this sequence is in gimbal lock.",
+        "The cosine $c$ of the angle between the first and the last axis determines how close an attitude is to gimbal "
+        r"lock: the eigenvalues of $B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every "
+        "angle. The last column has the sequences without gimbal lock at any attitude where this sequence is in gimbal "
+        "lock.",
         ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
         [
             (

@@ -76,8 +76,8 @@ def derive() -> Derivation:
         display=r"\left( \det R \right)^2",
     )
     d.passage(
-        "The determinant of a motion is continuous and 1 at the start, so it cannot jump to $-1$: the attitudes of a "
-        "body have determinant 1. Matrices of this kind are the rotations."
+        "During a motion the determinant of $R$ is continuous, and it is 1 at the start, so it cannot jump to $-1$: "
+        "the attitudes of a body have determinant 1. Matrices of this kind are the rotations."
     )
     d.step(
         r"If $R^{\mathsf T} R = 1$ and the determinant is 1, every entry equals its own cofactor: each column is the "

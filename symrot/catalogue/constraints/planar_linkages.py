@@ -131,7 +131,7 @@ def _four_bars(d: Derivation) -> None:
         named=r"|c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2",
     )
     d.step(
-        "The time derivative of Freudenstein's equation gives the same rate of the rocker.",
+        "The time derivative of Freudenstein's equation gives the same rate of the rocker as the closed polygon.",
         rate(freudenstein, {PHI: DPHI, PSI: DPSI}),
         2 * a * DPHI * (ground * sin(PHI) + c * sin(PHI - PSI))
         - 2 * c * DPSI * (ground * sin(PSI) + a * sin(PHI - PSI)),

@@ -131,7 +131,8 @@ def _braked(d: Derivation) -> None:
     power = -DRAG * T / C
     d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
     d.step(
-        "The same rate and angle are written with $f_1$ and $f_2$; these formulas also hold without damping.",
+        "The rate and the angle under a torque with damping are written with $f_1$ and $f_2$; these formulas also hold "
+        "without damping.",
         Matrix([speed, angle]),
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
         because="the equation is multiplied by the denominators",

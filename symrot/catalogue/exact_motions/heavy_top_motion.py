@@ -204,8 +204,9 @@ def _theta(d: Derivation) -> None:
         sign_text = sign if sign == "-" else "+"
         d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
-            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$; there $1 {sign_text} u$ is zero. "
-            r"Then $\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ have the following values.",
+            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Where $\mathrm{{sn}} = "
+            rf"\mathrm{{sn}}_w$, $1 {sign_text} u$ is zero. Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have the "
+            "following values.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
             because="the two quadratic relations between sn, cn and dn are substituted",

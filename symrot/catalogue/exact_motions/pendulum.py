@@ -163,7 +163,7 @@ def _spherical(d: Derivation) -> None:
         named=r"p_\phi^2\,(u_1 + u_2)",
     )
     d.step(
-        "If both heights are equal, the pendulum moves on a cone. The square of its rate is:",
+        "If both heights are equal, the pendulum moves on a cone. The square of its rate about the vertical is:",
         square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
         -W * ARM / (A * U1),
         because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",

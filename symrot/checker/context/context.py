@@ -469,8 +469,9 @@ def _check_consistency(context: Context, prefix: str) -> None:
                 )
         if meaning.quantity.sign not in ("", context.sign_of_products):
             raise InputError(
-                f"{prefix}where: expected products of inertia with one sign, got {meaning.written[0]} as the "
-                f"{meaning.quantity.title} besides others with the {context.sign_of_products} sign"
+                f"{prefix}where: expected all products of inertia with the same sign convention, got "
+                f"{meaning.written[0]} as the {meaning.quantity.title} besides others with the "
+                f"{context.sign_of_products} sign"
             )
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:

@@ -468,7 +468,7 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
         left, right = map(shape_text, mismatch.shapes)
         loose = isinstance(equation.left, Symbol) or isinstance(equation.right, Symbol)
         hint = " (a name that nothing defines is a scalar; `symrot identify` says what a matrix is)" if loose else ""
-        raise InputError(f"expected two sides of one shape, got {left} == {right}{hint}") from None
+        raise InputError(f"expected two sides of the same shape, got {left} == {right}{hint}") from None
 
 
 def _needs(case: _ClaimCase) -> list[Need]:

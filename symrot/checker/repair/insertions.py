@@ -76,7 +76,7 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
     if len(residual) > MOST_TERMS_READ or len(ring.roots) > MOST_ROOTS_READ:
-        raise TooLarge("the difference of the sides is too long to be one term")
+        raise TooLarge("the difference of the sides is too long to be added to one side as a term")
     return Integer(0) if vanishes(ring, residual) else ring.expression(ring.ratio(formula))
 
 
