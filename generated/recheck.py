@@ -1528,7 +1528,10 @@ def check_files(path):
             check_law(law, specification, 64 if has_choices(data) else 8)
         for function in readback:
             check_precision(function, data, specification, kernels)
-    return f"{name}: {len(files)} hashes, the C text of {' and '.join(readback)} (also of batches) and the laws hold"
+    return (
+        f"{name}: {len(files)} hashes agree; the C text of {' and '.join(readback)}, and of their batch functions, "
+        "agrees with the formulas; the laws hold"
+    )
 
 
 def check(path):

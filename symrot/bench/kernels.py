@@ -461,7 +461,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="number of samples in the large batch; 0 omits it")
-    parser.add_argument("--kernels", nargs="+", metavar="NAME", help="kernels to compare (default: those in the table)")
+    parser.add_argument(
+        "--kernels",
+        nargs="+",
+        metavar="NAME",
+        help="kernels to compare (default: those in the table of the benchmark's report)",
+    )
     parser.add_argument("--jacobians", action="store_true", help="compare values with their derivatives")
     parser.add_argument("--count", action="store_true", help="count operations only")
     options = parser.parse_args(arguments)

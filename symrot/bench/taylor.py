@@ -349,7 +349,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument(
         "--orders",
         action="store_true",
-        help="compare the times of different orders of symrot's Taylor series, instead of heyoka",
+        help="compare different orders of symrot's Taylor series with each other, not with heyoka",
     )
     parser.add_argument(
         "--reference", action="store_true", help="compute the reference states again and print them (takes minutes)"

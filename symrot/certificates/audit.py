@@ -70,7 +70,7 @@ def load_certificate(path: Path) -> Data:
     if not isinstance(data, dict):
         raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
     if str(data.get("schema", "")).startswith("symrot.step/"):
-        raise CertificateError(f"{path}: expected the certificate of a kernel, got one of a step")
+        raise CertificateError(f"{path}: expected the certificate of a kernel, got the certificate of a time step")
     for name, kind in PARTS.items():
         if name not in data and name not in OPTIONAL:
             raise CertificateError(f"{path}: expected the section {name!r} in a certificate, but it is missing")
@@ -205,7 +205,8 @@ def _bounds(path: Path, data: Data, source: str) -> str:
     region = library_region(data["kernel"], source) if own is not None else None
     if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
         raise CertificateError(
-            f"{path}: expected bounds of rounding errors under the kernel's own restrictions of inputs, got others"
+            f"{path}: expected bounds of rounding errors that assume the kernel's own restrictions of inputs, got "
+            "other restrictions"
         )
     kernels = list(operations_of(data, source).values())
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None

@@ -390,7 +390,8 @@ def prove(law, case, formulas):
                     pass
                 case _:
                     raise ValueError(
-                        f"expected the function call that the new variable {first} stands for, got another formula"
+                        f"expected the new variable {first} to stand for a call of sqrt, sin, cos, atan2 or copysign, "
+                        "got another formula"
                     )
         elif kind == "square":
             square, value = map(reader.read, (first, second))
@@ -481,8 +482,8 @@ def check(path):
     checked = " and ".join(readback)
     laws = "1 law of the formulas holds" if len(data["laws"]) == 1 else f"{len(data['laws'])} laws of the formulas hold"
     return (
-        f"{name}: {len(files)} hashes agree, the C text of {checked} (also of batches) computes the formulas, "
-        f"{laws} (bounds not checked)"
+        f"{name}: {len(files)} hashes agree; the C text of {checked}, and of their batch functions, computes the "
+        f"formulas; {laws}; the rounding bounds were not checked"
     )
 
 

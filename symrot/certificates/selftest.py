@@ -51,7 +51,10 @@ class _CheckedFunction:
         """Return the sentence that reports a failure of this function, for doubles or floats."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
-        return f"expected {self.name}{suffix} right to {self.allowed} ulp: on this machine its error is larger"
+        return (
+            f"expected {self.name}{suffix} to have an error of at most {self.allowed} ulp: on this machine its "
+            "error is larger"
+        )
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:

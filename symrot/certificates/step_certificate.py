@@ -105,7 +105,7 @@ class _Residue:
     def __truediv__(self, other: Any) -> "_Residue":
         right = _Residue.of(other)
         if not right.value:
-            raise CertificateError("expected a point at which no divisor is zero, got another one")
+            raise CertificateError("expected a point at which no divisor is zero, got a point with a zero divisor")
         return self * _Residue(pow(right.value, -1, PRIME), right.degree)
 
     def __rtruediv__(self, other: Any) -> "_Residue":

@@ -181,7 +181,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict that relations between rates, momenta and energies imply; if none does, ``verdict``."""
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
-    from symrot.checker.context.motion import by_motion
+    from symrot.checker.context.relations.motion import by_motion
 
     return by_motion(claim, verdict)
 

@@ -63,8 +63,8 @@ def check(
     Parameters
     ----------
     left : str, Expr or Matrix
-        The whole claim as text, ``"left == right"`` in SymPy syntax, as typed, or in LaTeX (with a backslash): names
-        are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
+        The whole claim as text, ``"left == right"`` in SymPy syntax, as people type it, or in LaTeX (with a backslash):
+        names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy value.
     assume : sequence
@@ -110,7 +110,7 @@ def check(
     """
     stated = read_context(where, body, frame, sequence)
     if stated and not isinstance(left, str):
-        raise InputError("where, body, frame, sequence: expected a claim as text with a context, got a SymPy value")
+        raise InputError("where, body, frame, sequence: expected these options with a claim as text, got a SymPy value")
     try:
         return _checked(left, right, assume, units, repair, stated)
     except RecursionError:
@@ -124,7 +124,7 @@ def _checked(
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
-            raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
+            raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
         left = with_plain_signs(typed)
         if is_latex(left) and measured_text(left) is None:

@@ -163,7 +163,8 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
     """Return the verdict, or "definition" for a text that has both letters and numbers with units.
 
-    Such a text is an equation for its letters and no identity. If it ends with numbers alone, these are decided.
+    Such a text is an equation for its letters and no identity. In ``F = m a = 2 kg * 3 m/s^2 = 6 N``, the end without
+    letters is decided.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
@@ -548,7 +549,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
             verdict = replace(under_name, notes=(*under_name.notes, note))
         elif verdict.verdict == "false" and _names(left) and not _names(right) - {"pi"} and _depends_on_letters(claim):
             letters = " and ".join(sorted(_names(left) - {"pi"}))
-            verdict = Verdict("definition", reason=f"it has numbers for {letters}, which nothing here gives")
+            verdict = Verdict(
+                "definition",
+                reason=f"the equation holds only for certain values of {letters}, and the text does not state any",
+            )
         decided.append(verdict)
     return decided
 

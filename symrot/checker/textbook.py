@@ -1,8 +1,9 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-Two rules tell an error of a document from a loss in extraction. Another reading of the text may change what is printed,
-but not the result that it is compared with. And a loss may be the cause only if the printed formula and the true one
-differ in nothing but characters of the kinds that were lost at this place.
+Two rules tell an error of a document from a loss in extraction. First, another reading of the text (with characters
+put back) may change the printed side of a claim, but not the right result with which it is compared. Second, a loss
+explains a false claim only if the printed formula and the true one differ in nothing but characters of the kinds that
+were lost at this place.
 """
 
 from collections import Counter

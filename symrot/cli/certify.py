@@ -40,7 +40,10 @@ def _bound(options: Namespace) -> int:
     report: symrot.RoundingBounds | symrot.LargestBox
     if options.target is None:
         if options.variable:
-            raise InputError("--variable: expected --target X as well, since only the search for a box changes ranges")
+            raise InputError(
+                "--variable: expected --target X as well: only the search for a box, which --target "
+                "starts, changes ranges"
+            )
         report = symrot.bound(options.kernel, options.box, options.precision)
     else:
         report = symrot.largest_box(
@@ -107,7 +110,8 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds need: they allow that a*b + c is rounded only once",
+        help="test only what the error bounds assume; they do not assume that a*b is rounded before c is added in a*b "
+        "+ c",
     )
     json_option(parser)
 
@@ -139,7 +143,9 @@ def _certify_arguments(parser: ArgumentParser) -> None:
                         "scene; may be repeated")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="certify one time step of a scene: rk4, taylor or dop853; "
                         "with --box for its states and dt, bound rounding and truncation")  # fmt: skip
-    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument(
+        "--order", type=int, metavar="N", help="order of the Taylor series with --step taylor, 1 to 16 (default: 8)"
+    )
     parser.add_argument(
         "--objects", action="store_true", help="compile the kernel, and compare the object code with the C text"
     )

@@ -237,7 +237,7 @@ def _derive(options: Namespace) -> int:
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of NAMEs, --all and --check (see `symrot derive --help`)")
     if len(options.name) > 1 and (options.directory is None or options.step is not None):
-        raise InputError("derive: expected a folder, -o DIR, for several NAMEs, and no --step")
+        raise InputError("derive: expected a folder, -o DIR, and no --step with several NAMEs")
     if options.step is None and options.detail:
         raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
     if options.step is not None and not options.name:
@@ -421,7 +421,9 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
                         "such as omega,q, or by constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor, dop853 or exact")
-    parser.add_argument("--order", type=int, metavar="N", help="order of the step taylor, 1 to 16 (default: 8)")
+    parser.add_argument(
+        "--order", type=int, metavar="N", help="order of the Taylor series with --step taylor, 1 to 16 (default: 8)"
+    )
     parser.add_argument("--cmake", action="store_true", help="with -o: also write the files with which CMake "
                         "and pkg-config find the kernels in this folder")  # fmt: skip
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
@@ -480,10 +482,16 @@ def _check_arguments(parser: ArgumentParser) -> None:
 
 def _context_options(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "--body", metavar="WORDS", default="", help="the body: 'solid cylinder of radius r and height h'"
+        "--body",
+        metavar="WORDS",
+        default="",
+        help="the body that the claim is about, such as 'solid cylinder of radius r and height h'",
     )
     parser.add_argument(
-        "--frame", metavar="FRAME", default="", help="frame of angular velocities and rates: body or space"
+        "--frame",
+        metavar="FRAME",
+        default="",
+        help="frame in which the claim's angular velocities and rates have their components: body or space",
     )
     parser.add_argument("--sequence", metavar="SEQUENCE", default="",
                         help="Euler angles: ZXZ or 3-1-3 about moving axes, zyx about fixed axes")  # fmt: skip

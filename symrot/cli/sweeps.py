@@ -38,8 +38,8 @@ def _vary(texts: list[str]) -> dict[str, Any]:
         if isinstance(law, Distribution) != (sign == "~"):
             better = "~" if sign == "=" else "="
             raise InputError(
-                f"--vary: expected ~ before a distribution and = before a grid, got {text[:100]!r}; "
-                f"write '{name} {better} {law_text.strip()[:80]}'"
+                f"--vary: expected '~' before a distribution and '=' before a grid, got {text[:100]!r}; write '{name} "
+                f"{better} {law_text.strip()[:80]}'"
             )
     return laws
 

@@ -44,7 +44,7 @@ class Dual:
         return Dual(self.value - other.value, slopes)
 
     def __rsub__(self, other: Any) -> "Dual":
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> "Dual":
         if not isinstance(other, Dual):

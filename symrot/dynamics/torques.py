@@ -228,7 +228,7 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
         if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
             raise InputError(
-                f"torque: expected a formula that writes abs where it has a kink, got {source!r}; write it with "
+                f"torque: expected a formula whose kinks are written with abs, got {source!r}; write "
                 f"abs({size.args[0]})"
             )
     return result

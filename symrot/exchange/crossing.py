@@ -69,7 +69,7 @@ def require_boundary(surface: Surface, where: str) -> str:
     searched = len(surface.triangles) <= MOST_SEARCHED and _search_pairs(surface, boxes, where)
     parts = f"{count} shells" if count > 1 else "one shell"
     pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
-    return f"closed, {parts}; inside and outside agree along {lines} of {len(chosen)} lines; {pairs}"
+    return f"closed, {parts}; on {lines} of {len(chosen)} test lines the surface separates inside from outside; {pairs}"
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
@@ -137,8 +137,8 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
     place = ", ".join(f"{x:.6g}" for x in surface.vertices.min(axis=0) + size * point)
     reason = "part of it is turned inside out" if winding < 0 else "parts overlap, or a cavity has its normals outwards"
     raise InputError(
-        f"{where}: expected a surface that does not cross itself, with each point outside or inside once, got a "
-        f"winding number of {winding} at ({place}): {reason}"
+        f"{where}: expected a surface that does not cross itself, where every winding number is 0 (outside) or 1 "
+        f"(inside), got a winding number of {winding} at ({place}): {reason}"
     )
 
 

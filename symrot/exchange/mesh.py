@@ -139,8 +139,8 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
     if result is None:
         if work > LARGEST_WORK:
             raise InputError(
-                f"{where}: expected a mesh whose integrals have an error of at most {float(LARGEST_ERROR):g}, got one "
-                f"whose terms cancel, with {len(surface.triangles)} triangles; reduce their number"
+                f"{where}: expected a mesh whose integrals have an error of at most {float(LARGEST_ERROR):g}, got a "
+                f"larger error, because large terms cancel; reduce the number of triangles, {len(surface.triangles)}"
             )
         moments = exact_moments(surface, degree)
         _require_volume(moments, unit, where)

@@ -136,7 +136,7 @@ def mark_advice(source: str, position: int, known: Collection[str]) -> str:
     if word and word[0] in ("if", "else", "then"):
         return "write where(condition, a, b)" if "where" in known else ""
     if word and word[0] == "xor":
-        return "write and, or and not between conditions"
+        return "combine conditions with 'and', 'or' and 'not'"
     last = before.replace("(", " ").split()[-1:]
     if last and last[0] in known and rest and before[-1] != "(":
         return f"write {last[0]}(..), with brackets"

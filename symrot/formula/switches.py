@@ -114,12 +114,12 @@ def condition_error(node: Node) -> str:
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
             if condition:
-                return "a comparison such as omega_3 < 1 as the first argument of where"
+                return "a comparison such as omega_3 < 1 as the first argument of 'where'"
             asked = [node[0] == "call" and node[1] == "where" and k == 0 for k, _ in enumerate(children(node))]
         elif node[1] == "less" and any(part[0] == "call" and part[1] in ("less", "not") for part in node[2]):
-            return "one comparison at a time, such as 1 < t and t < 2 for 1 < t < 2"
+            return "one comparison at a time: '1 < t and t < 2' instead of '1 < t < 2'"
         elif not condition:
-            return "comparisons only in the first argument of where, such as where(t < 1, 1, 0)"
+            return "comparisons only in the first argument of 'where', such as where(t < 1, 1, 0)"
         else:
             asked = [node[1] != "less"] * len(children(node))
         errors = (wrong(child, each) for child, each in zip(children(node), asked, strict=True))

@@ -123,7 +123,7 @@ def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
 def _quarters(limit: Polynomial) -> int:
     turns = 2 * limit.collect(["pi"]).get((1,), constant(0)).value({})
     if turns.denominator != 1:
-        raise ValueError(f"expected multiples of pi/2 as limits of an angle, got {turns}*pi/2")
+        raise ValueError(f"expected whole multiples of pi/2 as limits of an angle, got {turns}*pi/2")
     return int(turns)
 
 

@@ -134,7 +134,7 @@ LESSONS = {
             Number(
                 "The end of the bar, 50 mm from the axis, is pulled towards the axis with the acceleration",
                 "a_1",
-                "The second term of the acceleration",
+                "The centripetal term of the acceleration",
                 "m/s^2",
                 entry=0,
                 where={s.d_x: BAR, s.d_y: Integer(0), s.d_z: Integer(0)},

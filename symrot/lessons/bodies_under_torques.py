@@ -75,7 +75,7 @@ LESSONS = {
             Number(
                 "The wheel starts with exactly the precession that this moment maintains, so the difference is zero:",
                 "W c_3 - C\\,\\dot\\phi\\,\\dot\\psi",
-                "If the axle is pushed around faster than this",
+                "If the axle is pushed around faster than it precesses",
                 "N m",
                 where={s.dphi: s.omega_z, s.dpsi: s.omega_x},
             ),

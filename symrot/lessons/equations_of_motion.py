@@ -109,7 +109,7 @@ LESSONS = {
                 "In the scene, the torque is constant in the body. If it were constant in space, the derivative of "
                 "its body components with respect to $q_1$ would be",
                 "\\left| \\partial \\tau_b / \\partial q_1 \\right|",
-                "The derivative of this torque",
+                "If a torque is constant in space",
                 "N m",
                 power=Rational(1, 2),
             ),

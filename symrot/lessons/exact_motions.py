@@ -102,7 +102,7 @@ LESSONS = {
             Number(
                 "At the start, the sum of the rates of precession and spin angle of the top is",
                 "\\dot\\phi + \\dot\\psi",
-                "The sum and the difference of both rates",
+                "The sum and the difference of the rates of precession and spin",
                 "rad/s",
                 entry=0,
             ),

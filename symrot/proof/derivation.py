@@ -211,7 +211,8 @@ class Derivation(PrintedPage):
         for _, text in board:
             if not self._is_read_back(claim, text, left, sides, relations):
                 raise ProofError(
-                    f"{self.name}, {claim!r}: expected LaTeX that can be parsed in the proof on the board, got {text}"
+                    f"{self.name}, {claim!r}: expected LaTeX that can be parsed in the detailed proof of the step, got "
+                    f"{text}"
                 )
         return self._add(
             Step(

@@ -298,7 +298,9 @@ class Trajectory(MotionSamples):
         if isinstance(times, bool) or not isinstance(times, int | np.integer):
             return self.at(times)
         if times < 2 or not len(self):
-            raise InputError(f"times: expected 2 samples or more, of a trajectory that has samples itself, got {times}")
+            raise InputError(
+                f"times: expected 2 or more as the number of new samples, and a trajectory with samples, got {times}"
+            )
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
     @cached_property
@@ -344,7 +346,9 @@ class Trajectory(MotionSamples):
         if not np.isfinite(times).all():
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if self.has_external_torque or self._propagator is None:
-            raise InputError("transition: expected torques with formulas, got a motion under a torque without one")
+            raise InputError(
+                "transition: expected torques with formulas, got a motion under a torque without a formula"
+            )
         return self._propagator.transition(self.scene, times[0], times[1])
 
     @cached_property

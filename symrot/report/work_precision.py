@@ -174,7 +174,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected studies with a common method at a common power of ten of the error, got none in common"
+            "--compare: expected two studies that measured the same method at the same power of ten of the error, got "
+            "studies without such a pair"
         )
     return {
         "format": "symrot comparison 1",

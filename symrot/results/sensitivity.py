@@ -80,8 +80,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
     def __getitem__(self, name: str) -> Sensitivity:
         if name in self.groups:
-            places: int | list[int] = list(self.groups[name])
-            places = places[0] if len(places) == 1 else places
+            group = list(self.groups[name])
+            places: int | list[int] = group if len(group) > 1 else group[0]
         elif name in self.variables:
             places = self.variables.index(name)
         else:

@@ -132,7 +132,9 @@ def present_value(
         if not inside and not (isinstance(value, list) and isinstance(step, int) and step < len(value)):
             if place.path[0] == "torque" and len(place.path) == 3 and place.path[2] in ("center_of_mass", "direction"):
                 return list(_vector(scene, place.path))
-            raise InputError(f"{key}: expected a value that the scene gives, got {_text(place)}, which it does not")
+            raise InputError(
+                f"{key}: expected a value that the scene gives, but the scene does not give {_text(place)}"
+            )
         value = value[step]
     return value
 
@@ -182,7 +184,9 @@ def _place(scene: _Scene, key: str) -> Place:
         return places[0]
     if places:
         listed = " or ".join(map(_text, places))
-        raise InputError(f"{key}: expected the name of one value of the scene, got a name of two; write {listed}")
+        raise InputError(
+            f"{key}: expected the name of one value of the scene, got a name that two values share; write {listed}"
+        )
     known = [*TABLES[3:], *SHORT, *RATES, "principal", *TENSOR, *_names(scene)]
     hint = nearest(key, known)
     raise InputError(

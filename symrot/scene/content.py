@@ -46,7 +46,10 @@ def plain(value: Any, where: str, depth: int = 0) -> Any:
 def _scalar_first(rotation: Any, where: str) -> list[float]:
     quaternion = rotation.as_quat().tolist()
     if len(quaternion) != 4 or isinstance(quaternion[0], list):
-        raise InputError(f"{where.removesuffix(': ')}: expected one rotation, got {len(quaternion)}; write rotation[0]")
+        raise InputError(
+            f"{where.removesuffix(': ')}: expected a single rotation, got {len(quaternion)} rotations; "
+            "write rotation[0] for the first"
+        )
     x, y, z, w = quaternion
     return [w, x, y, z]
 

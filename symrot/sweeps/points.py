@@ -124,7 +124,7 @@ _sobol_points = lru_cache(maxsize=4)(_Sobol)
 
 def _sobol(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
     if count > 2**SOBOL_BITS:
-        raise InputError(f"count: expected at most {2**SOBOL_BITS} draws with the sampling sobol, got {count}")
+        raise InputError(f"count: expected at most {2**SOBOL_BITS} draws with the sampling 'sobol', got {count}")
     return _sobol_points(len(streams), seed).points(start, stop)
 
 

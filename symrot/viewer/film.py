@@ -36,9 +36,13 @@ VIEW = {"elev": 22.0, "azim": -52.0}
 def require_encoder(path: Path) -> None:
     """Raise InputError if a package needed to write a film to this path is not installed."""
     if find_spec("matplotlib") is None:
-        raise InputError(f"{path}: expected matplotlib, but it is not installed; pip install 'symrot[film]'")
+        raise InputError(
+            f"{path}: expected matplotlib, but it is not installed; install it with pip install 'symrot[film]'"
+        )
     if path.suffix.lower() == ".mp4" and find_spec("imageio_ffmpeg") is None:
-        raise InputError(f"{path}: expected imageio-ffmpeg, but it is not installed; pip install 'symrot[film]'")
+        raise InputError(
+            f"{path}: expected imageio-ffmpeg, but it is not installed; install it with pip install 'symrot[film]'"
+        )
 
 
 def write_film(

@@ -59,7 +59,7 @@ def rounding_problem(
     box = input_box(kernel_problem, inputs, ranges)
     lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in kernel_problem.symbols.items() if place not in box]
     if lacking:
-        message = f"{operations.name}: expected {' '.join(lacking)} in addition to the ranges that the scene knows"
+        message = f"{operations.name}: expected {' '.join(lacking)} in addition to the ranges that the scene gives"
         raise InputError(f"{message}, got {' '.join(ranges)[:60] or 'no range'}")
     for group in kernel_problem.region.unit:
         _check_unit(group, kernel_problem, box)

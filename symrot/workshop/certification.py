@@ -284,7 +284,9 @@ def certify(
     folder = None if directory is None else Path(directory)
     if step is not None:
         if objects or not rounding:
-            raise InputError("certify: expected a step without objects and rounding=False, which are for kernels")
+            raise InputError(
+                "certify: expected no objects and no rounding=False together with a step: they are options for kernels"
+            )
         data, files = steps.certify_step(str(kernel), step, order, _ranges(box), folder, progress)
         return Certificate(data["kernel"], data["title"], (), steps.proofs(data), data, tuple(files))
     if order is not None:

@@ -63,7 +63,7 @@ def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int 
     if step is not None:
         return step_text(kernel, step, order, variables)
     if order is not None:
-        raise InputError(f"--order: expected --step taylor as well, got only the order {order}")
+        raise InputError(f"--order: expected '--step taylor' as well, got only the order {order}")
     return kernel_text(kernel, variables)
 
 

@@ -91,7 +91,10 @@ def object_lines(text: str, path: Path, where: str) -> list[str]:
     refused = [verdict for verdict in verdicts if not verdict.accepted]
     if refused:
         raise CertificateError(f"{path}: {refused[0].sentence()}")
-    text_lines = [f"{path}: {verdict.function} performs the C text, {HOLDS[verdict.verdict]}" for verdict in verdicts]
+    text_lines = [
+        f"{path}: {verdict.function} performs the operations of the C text, {HOLDS[verdict.verdict]}"
+        for verdict in verdicts
+    ]
     return [*text_lines, f"{path}: loops over samples are not compared; the certificate says what flags do to them"]
 
 
@@ -103,10 +106,12 @@ def _verdict(item: Data) -> str:
     """Return the verdict on one object file as text; for a rejected file, with the reason for its first function."""
     verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
-        return f"performs the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"
+        return f"performs the operations of the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"
     refused = [function for function in item["functions"] if function["verdict"] not in HOLDS]
     if not refused:
         return "not accepted under these flags"
     first = refused[0]
     where = f", output {first['output']}" if first["output"] else ""
-    return f"does not perform the C text ({first['name']}: {first['verdict']}{where}: {first['reason']})"
+    return (
+        f"does not perform the operations of the C text ({first['name']}: {first['verdict']}{where}: {first['reason']})"
+    )

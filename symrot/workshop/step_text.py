@@ -39,7 +39,7 @@ SIZES = (Fraction(1, 1024), Fraction(1, 64), Fraction(-1, 256))  # sizes of the 
 DIGITS = 40
 
 
-def _dop853(order: int) -> Method:
+def _dop853(order: int) -> RungeKutta:
     """Return the method of order 8 of Dormand and Prince's pair, without its estimates of the error."""
     stages = range(1, 13)
     return RungeKutta(
@@ -49,7 +49,9 @@ def _dop853(order: int) -> Method:
     )  # fmt: skip
 
 
-STEPS: Mapping[str, Callable[[int], Method]] = {"rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853}
+STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
+    "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
+}  # fmt: skip
 """The methods of emitted steps, by name; each is made from the order of the Taylor series."""
 
 
@@ -73,9 +75,9 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
     if name not in STEPS:
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, exact, got {name!r}")
     if order is not None and name != "taylor":
-        raise InputError(f"order: expected an order only for the step taylor, got {order} for the step {name}")
+        raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
     if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step taylor, got {order}")
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
     if len(set(jacobian)) < len(jacobian):
         raise InputError(f"jacobian: expected each input once, got {', '.join(jacobian)}")
     method = STEPS[name](ORDER if order is None else order)
@@ -97,7 +99,7 @@ def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian:
 def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelText:
     if order is not None or jacobian:
         option = "order" if order is not None else "jacobian"
-        raise InputError(f"{option}: expected none for the step exact, got {order or ', '.join(jacobian)}")
+        raise InputError(f"{option}: expected no value for the step 'exact', got {order or ', '.join(jacobian)}")
     from symrot.workshop.steps.exact import ExactStepText
 
     return ExactStepText(scene)

@@ -277,13 +277,31 @@ def test_the_latex_book_has_parts_chapters_and_links():
 
 def test_bold_words_are_bold_in_latex():
     page = Page("page", "Page", about="**Is $x^2$ positive?** The code `x**2` and `y**2`, *yes*.")
-    assert r"\textbf{Is $x^2$ positive?} The code \texttt{x**2} and \texttt{y**2}, \emph{yes}." in latex_document(page)
+    assert (
+        r"\textbf{Is $x^2$ positive?} The code \texttt{x**\allowbreak{}2} and \texttt{y**\allowbreak{}2}, \emph{yes}."
+        in latex_document(page)
+    )
 
 
 def test_a_command_can_be_copied_from_latex():
     page = Page("page", "Page", about="Try `symrot check 'x == 1' --given 'x > 0'`, with x in kg m^2.")
     text = latex_document(page)
     assert r"check \textquotesingle{}x == 1\textquotesingle{} -{}-given" in text and r"m\textsuperscript{2}" in text
+
+
+def test_a_long_formula_in_a_sentence_is_displayed_in_latex():
+    long = " + ".join(f"x_{{{n}}}" for n in range(30))
+    text = latex_document(Page("page", "Page", about=f"It is ${long}$. And $x$, too."))
+    assert rf"It is \fitted{{{long}.}} And $x$, too." in text
+
+
+def test_a_proof_on_the_board_fits_on_a_screen(derived):
+    for page in derived.values():
+        for number, step in enumerate(page.steps, 1):
+            if step.board:
+                detail = page.part(number, True).latex().split(r"\section*{In detail}")[1]
+                lines = detail.split(r"\paragraph{Units}")[0].split(r"\medskip")[0].strip().count("\n") + 1
+                assert lines <= 33, (page.name, number)
 
 
 def test_links_lead_to_pages(printed):
@@ -306,7 +324,7 @@ def test_one_step_on_the_command_line(form, start, capsys):
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
         (["heavy_top", "--detail"], "expected --step N"),
-        (["heavy_top", "poinsot"], "expected a folder, -o DIR, for several NAMEs"),
+        (["heavy_top", "poinsot"], "expected a folder, -o DIR, and no --step"),
         (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),

@@ -306,7 +306,7 @@ def test_a_difference_under_flags_that_keep_bits_fails():
     assert compiled.holds(both) and not refuted([{"objects": both}, {}]) and refuted([{"objects": strict}])
     output_lines = compiled.lines(both)
     assert (
-        "does not perform the C text (f: differs, output y: the C text has a + b)" in output_lines[1]
+        "does not perform the operations of the C text (f: differs, output y: the C text has a + b)" in output_lines[1]
         and "clang is not on" in output_lines[2]
     )
     counts = compiled.table({"one": both, "two": both, "three": None})

@@ -234,7 +234,7 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
     ({"where": ["T"]}, "expected 'NAME = words'"),
     ({"where": ["T + 1 = torque"]}, "expected a name before '=', got the formula 'T . 1'"),
     ({"where": ["T = torque, I = spin"]}, "write one text for each"),
-    ({"where": ["Q = torque"]}, "expected words about names that the claim has, got 'Q'"),
+    ({"where": ["Q = torque"]}, "expected meanings only of names that occur in the claim, got 'Q'"),
     ({"where": ["I = spin", "I = torque"]}, "expected one meaning of I, got 'spin' and 'torque'"),
     ({"where": ["omega = torque"]}, "expected a quantity in rad/s, as the name omega says, got 'torque'"),
     ({"where": ["T = torque"], "units": {"T": "J/s"}}, "expected a quantity in J/s, the unit stated for T"),
@@ -254,7 +254,7 @@ def test_a_context_that_means_nothing_or_contradicts_is_refused(context, message
 
 
 def test_a_context_of_sympy_values_is_refused():
-    with pytest.raises(InputError, match="expected a claim as text with a context"):
+    with pytest.raises(InputError, match="expected these options with a claim as text"):
         symrot.check(1, 1, body="disk")
 
 
@@ -305,7 +305,7 @@ def test_a_file_of_claims_states_contexts(tmp_path):
 def test_a_file_with_words_about_other_names_is_refused(tmp_path):
     path = tmp_path / "claims.toml"
     path.write_text("schema = 1\n[[claim]]\nid = 'a'\nsymbols = ['x']\nclaim = 'x == x'\nwhere = ['y = torque']\n")
-    with pytest.raises(InputError, match="a: where: expected words about names that the claim has, got 'y'"):
+    with pytest.raises(InputError, match="a: where: expected meanings only of names that occur in the claim, got 'y'"):
         symrot.check_file(path)
 
 

@@ -148,7 +148,7 @@ def test_vector_formulas_of_papers(latex, text):
 
 
 @pytest.mark.parametrize(("latex", "words"), [
-    (r"\begin{aligned} a &= b \\ c &= d\end{aligned}", "one equation instead of the lines of aligned"), (r"\begin{align*}a&=b\end{align*}", "lines of align"),
+    (r"\begin{aligned} a &= b \\ c &= d\end{aligned}", "one equation instead of the environment aligned"), (r"\begin{align*}a&=b\end{align*}", "the environment align"),
     (r"a &= b", "at position 3"), (r"a = b \\ c = d", "at position 7"), (r"\Delta\theta = \omega", "for a change"),
     (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a function that is declared"), (r"\theta(0) = 1", "a function that is declared"),
     (r"x^{(2)} = 1", "a power like x^2"), (r"a \pm b = c", "at position 3"), (r"\left(\frac{dL}{dt}\right)_{space} = N", "operator or '='"),

@@ -147,7 +147,7 @@ def test_units_of_names_are_inferred():
 
 
 @pytest.mark.parametrize(("units", "words"), [
-    ({"y": "m"}, "names that the claim has, got 'y'"), ({"x": "cubit"}, "units: x: expected a unit like"), ({"x": 1}, "as text, got 1"),
+    ({"y": "m"}, "names that occur in the claim, got 'y'"), ({"x": "cubit"}, "units: x: expected a unit like"), ({"x": 1}, "as text, got 1"),
 ])  # fmt: skip
 def test_bad_units_are_refused(units, words):
     with pytest.raises(InputError, match=words):
@@ -169,7 +169,7 @@ def test_units_in_a_file_of_claims(tmp_path, capsys):
         "inconsistent",
     ]
     path.write_text(path.read_text().replace("x = 'm', k", "z = 'm', k"))
-    with pytest.raises(InputError, match="a: units: expected units of names that the claim has, got 'z'"):
+    with pytest.raises(InputError, match="a: units: expected units only for names that occur in the claim, got 'z'"):
         symrot.check_file(path)
 
 

@@ -256,7 +256,7 @@ def test_the_shipped_scene():
 def test_what_is_no_such_motion():
     with pytest.raises(InputError, match="symmetric about the driven axis"):
         spin_up.motion((1, 2, 3), 2, 1, (1, 0, 0))
-    with pytest.raises(InputError, match="rotates across it too"):
+    with pytest.raises(InputError, match="also rotates about an axis perpendicular"):
         spin_up.motion((1, 1, 3), 2, 1, (0, 0, 1))
     with pytest.raises(InputError, match="axis 0, 1 or 2"):
         spin_up.motion((1, 1, 3), 3, 1, (1, 0, 1))

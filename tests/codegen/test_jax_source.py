@@ -133,12 +133,12 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
     ("heavy_top", "return domega, dq", "return dq, domega", "expected the function to return"),
     ("heavy_top", "\n\ndef heavy_top", "\nprint(1)\n\ndef heavy_top", "expected"),
     ("heavy_top", "import jax.numpy as jnp\n", "import numpy as jnp\n", "the import of jax.numpy"),
-    ("heavy_top", "\n\ndef heavy_top", "\n\ndef jnp(x):\n    return jnp.where(x == 0.0, 1.0, x)\n\n\ndef heavy_top", "functions such as _sinc"),
+    ("heavy_top", "\n\ndef heavy_top", "\n\ndef jnp(x):\n    return jnp.where(x == 0.0, 1.0, x)\n\n\ndef heavy_top", "functions with a name such as _sinc"),
     ("heavy_top", ")/A,", ")/A, A,", "one formula in each line"),
     ("heavy_top", "q2*q3", "q2**q3", "as symrot emits it"),
-    ("rotation_vector_dcm", "-x*_tangent_gap(x)*dx", "x*_tangent_gap(x)*dx", "functions alone"),
+    ("rotation_vector_dcm", "-x*_tangent_gap(x)*dx", "x*_tangent_gap(x)*dx", "only definitions of functions"),
     ("rotation_vector_dcm", "x == 0.0, 1.0,", "x == 0.0, 2.0,", "got others"),
-    ("rotation_vector_dcm", "@jax.custom_jvp\n", "", "the rule of the derivative"),
+    ("rotation_vector_dcm", "@jax.custom_jvp\n", "", "a rule for the derivative"),
     ("rotation_vector_dcm", "jnp.where(x == 0.0, 1.0, jnp.sin(x)/x)", "jnp.sin(x)/x", "jnp.where"),
 ])  # fmt: skip
 def test_wrong_jax_is_refused(name, old, new, message):

@@ -132,7 +132,7 @@ def test_the_operations_are_those_of_the_c_text():
     ("const B", "const A", "not yet used"),
     ("0.5*omega_1", "Math.max(0.5, 1.0)*omega_1", "a function of Math"),
     ("(inertia, W,", "(W, inertia,", "expected the arguments"),
-    ("export function heavy_top", "eval(1);\nexport function heavy_top", "functions alone"),
+    ("export function heavy_top", "eval(1);\nexport function heavy_top", "only functions"),
     ("B - C", "B - C, A", "expected"),
     ("q2*q3", "q2**q3", "expected"),
 ])  # fmt: skip

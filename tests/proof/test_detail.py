@@ -10,7 +10,7 @@ from symrot.proof.pages.parts import MANY, remarks, repetitions
 from symrot.symbols import omega_b, theta, x
 
 OMEGA = Matrix(omega_b)
-LONGEST = 40  # lines of LaTeX
+LONGEST = 33  # lines of LaTeX: a screen
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_a_wrong_line_on_the_board_is_refused(page, wrong):
 
 
 def test_a_line_on_the_board_that_cannot_be_read_is_refused(page):
-    with pytest.raises(ProofError, match=r"in the proof on the board, got \\text"):
+    with pytest.raises(ProofError, match=r"in the detailed proof of the step, got \\text"):
         page.step("Zero.", OMEGA.dot(OMEGA.cross(OMEGA)), 0, because="of it", board=[("Words:", r"\text{nothing}")])
 
 

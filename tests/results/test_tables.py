@@ -54,7 +54,7 @@ def test_times_outside_the_motion_are_refused(trajectory, t):
 
 @pytest.mark.parametrize("count", [1, 0, -3])
 def test_fewer_than_two_samples_are_refused(trajectory, count):
-    with pytest.raises(InputError, match="times: expected 2 samples or more"):
+    with pytest.raises(InputError, match="times: expected 2 or more as the number of new samples"):
         trajectory.resample(count)
 
 

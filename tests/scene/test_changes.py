@@ -183,7 +183,7 @@ REFUSALS = [
     ({"mass": float("nan")}, "a positive mass in kg, got nan"),
     ({"omega": [1, 2]}, "three numbers"),
     ({"omega_2": [1, 2]}, "a number in rad/s"),
-    ({"attitude": Rotation.identity(3)}, "one rotation, got 3"),
+    ({"attitude": Rotation.identity(3)}, "a single rotation, got 3 rotations"),
     ({"attitude": np.ones((3, 3))}, "a rotation: orthonormal rows"),
     ({"attitude": "ZXZ"}, "an attitude"),
     ({"body": {"inertia": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]}}, "a symmetric tensor"),

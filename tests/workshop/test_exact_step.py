@@ -8,7 +8,7 @@ import pytest
 
 import symrot
 from symrot.cli.main import main
-from symrot.errors import InputError
+from symrot.errors import CertificateError, InputError
 from symrot.workshop.steps.exact import ExactStepText
 from tests.needs import needs_compiler
 
@@ -70,15 +70,22 @@ def test_the_emitted_test_passes(tmp_path):
     assert b"agrees" in subprocess.run([tmp_path / "check"], capture_output=True, check=True).stdout
 
 
+def test_exact_steps_have_no_certificate(capsys):
+    assert main(["certify", "tumbling_prism", "--step", "exact"]) == 2
+    assert "exact steps have a test and no certificate" in capsys.readouterr().err
+    with pytest.raises(CertificateError, match="only a test"):
+        _ = symrot.emit("tumbling_prism", step="exact").certificate
+
+
 @pytest.mark.parametrize(
     ("scene", "options", "message"),
     [
         ("spin_up", {}, "the steps rk4, taylor and dop853 exist"),
         ("gyrostat", {}, "without such a closed form"),
         ("friction_wheel", {}, "without switches"),
-        ("tumbling_prism", {"target": "js"}, "expected the target c"),
-        ("tumbling_prism", {"order": 4}, "order: expected none"),
-        ("tumbling_prism", {"jacobian": ["x"]}, "jacobian: expected none"),
+        ("tumbling_prism", {"target": "js"}, "expected the target 'c'"),
+        ("tumbling_prism", {"order": 4}, "order: expected no value"),
+        ("tumbling_prism", {"jacobian": ["x"]}, "jacobian: expected no value"),
     ],
 )
 def test_what_has_no_exact_step_is_refused(scene, options, message):

@@ -135,7 +135,7 @@ def test_steps_are_emitted_by_the_public_function():
     ("scene", "options", "words"),
     [
         ("t_handle", {"step": "euler"}, "expected one of the methods rk4, taylor, dop853, exact, got 'euler'"),
-        ("t_handle", {"step": "rk4", "order": 3}, "an order only for the step taylor"),
+        ("t_handle", {"step": "rk4", "order": 3}, "an order only for the step 'taylor'"),
         ("t_handle", {"step": "taylor", "order": 17}, "expected 1 to 16"),
         ("t_handle", {"step": "taylor", "order": 0}, "expected 1 to 16"),
         ("t_handle", {"order": 4}, "expected a step as well"),

@@ -134,7 +134,7 @@ def test_numbers_keep_their_exact_values():
 @pytest.mark.parametrize(("value", "frame", "sentence"), [
     (3, None, "a RigidBody, Inertia, Dyadic or ReferenceFrame, got int"),
     (outer(N.x, N.x), None, "the frame of the components, got NoneType"),
-    (ReferenceFrame("B"), N, "oriented to each other"),
+    (ReferenceFrame("B"), N, "known orientation to each other"),
     (ReferenceFrame("B"), None, "the space frame"),
     (RigidBody("b"), None, "a real number, got b_ixx"),
 ])  # fmt: skip

@@ -108,8 +108,8 @@ class ExactPath:
             step = min(step, mpmath.mpf(proven))
             if step < 1e-15 * max(1, abs(now)):
                 raise SymrotError(
-                    f"{self.plan.scene.name}: the motion cannot be followed in {DIGITS} digits beyond "
-                    f"t = {float(now)!r} s: its steps shrink to nothing, as before a singularity"
+                    f"{self.plan.scene.name}: the motion cannot be computed to {DIGITS} digits beyond t = "
+                    f"{float(now)!r} s: the steps of the integration become too short, as happens before a singularity"
                 )
         self.pieces.append((now, now + step, series))
         self._end = (now + step, self._sum(series, step))

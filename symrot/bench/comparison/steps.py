@@ -202,7 +202,7 @@ def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, floa
         error = float(np.max(np.abs(result - results["symrot"])))
         if not error < 1e-11 * float(np.max(np.abs(results["symrot"]))):
             raise AssertionError(
-                f"{tool}: expected the results of symrot for {step.name}, got a difference of {error:.1e}"
+                f"{tool}: expected results equal to those of symrot for {step.name}, got a difference of {error:.1e}"
             )
     least: dict[str, float] = {}
     draw = Random(5)

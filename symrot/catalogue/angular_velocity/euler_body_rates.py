@@ -51,8 +51,8 @@ def derive() -> Derivation:
     d.section("The extrinsic sequences")
     _tabulate(
         d,
-        "The same for the sequences about axes of space. An extrinsic sequence is the intrinsic sequence of the "
-        "reversed name with the angles in reversed order.",
+        "The same quantities for the sequences about axes of space. An extrinsic sequence is the intrinsic sequence of "
+        "the reversed name with the angles in reversed order.",
         EXTRINSIC_SEQUENCES,
     )
     d.section("The direction cosine matrices")
@@ -90,8 +90,8 @@ def _argument(d: Derivation) -> None:
         display=THREE_AXES,
         board=[
             (
-                "The second and the third rotation are about axes that the first rotation carries along, the third is "
-                "about an axis that the second carries along:",
+                "The first rotation carries the axes of the second and the third rotation along, and the second "
+                "rotation carries the axis of the third along:",
                 r"\dot\phi\,e_z + R_z(\phi)\,(\dot\theta\,e_x + R_x(\theta)\,\dot\psi\,e_z)",
             ),
             ("Without brackets:", THREE_AXES),
@@ -100,7 +100,7 @@ def _argument(d: Derivation) -> None:
     _in_space(d, EXAMPLE)
     _in_body(d, EXAMPLE)
     d.step(
-        "The columns of both matrices are the same three axes, seen from space and from the body.",
+        "The columns of $B_s$ and of $B_b$ are the same three axes, in components of space and of the body.",
         body,
         dcm_sb.T * space,
         because=r"$R^{\mathsf T}$ maps space components to body components",

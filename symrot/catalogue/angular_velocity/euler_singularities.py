@@ -35,13 +35,14 @@ def derive() -> Derivation:
     _cofactors(d, EXAMPLE)
     for point in singularity_dossier(EXAMPLE).locked:
         _locked(d, EXAMPLE, point)
-    d.passage(f"Sequences without gimbal lock at any of these attitudes: {_regular(EXAMPLE)}.")
+    d.passage(f"Sequences without gimbal lock at any of the attitudes above: {_regular(EXAMPLE)}.")
     others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
     d.section("How close to gimbal lock, for the other sequences")
     d.tabulate(
-        r"The cosine $c$ of the angle between the first and the last axis decides: the eigenvalues of "
-        r"$B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every angle. The last column has "
-        "the sequences without gimbal lock at any attitude where this sequence is in gimbal lock.",
+        "The cosine $c$ of the angle between the first and the last axis determines how close an attitude is to gimbal "
+        r"lock: the eigenvalues of $B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every "
+        "angle. The last column has the sequences without gimbal lock at any attitude where this sequence is in gimbal "
+        "lock.",
         ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
         [
             (
@@ -82,7 +83,7 @@ def _condition(d: Derivation, sequence: str) -> Step:
 def _cofactors(d: Derivation, sequence: str) -> Step:
     jacobian = rate_jacobian(sequence)
     return d.step(
-        "The product of the determinant and the inverse has no denominator, so it is finite at every angle.",
+        "The product of the determinant of $B$ and its inverse has no denominator, so it is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
         jacobian.adjugate(method="berkowitz"),
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",
@@ -108,7 +109,8 @@ def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Ste
     d.notation({"n": lost})
     if sequence == EXAMPLE:
         d.define(
-            "At this angle all three axes of rotation are perpendicular to one direction, in body components:",
+            "At this angle of gimbal lock, all three axes of rotation are perpendicular to one direction, in body "
+            "components:",
             "n",
             lost,
         )
@@ -121,8 +123,8 @@ def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Ste
     )
     strength = _strength(sequence, point)
     growth = d.step(
-        rf"As $\theta$ approaches this angle, ${where}$, the rates grow: $\det B\,\dot q \to {_limit(strength)}$. "
-        "Here $s$ are the angle rates that do not rotate the body.",
+        rf"As $\theta$ approaches gimbal lock at ${where}$, the angle rates grow: $\det B\,\dot q \to "
+        f"{_limit(strength)}$. Here $s$ are the angle rates that do not rotate the body.",
         _adjugate(sequence).subs(at),
         strength * silent * lost.T,
         because="the matrix of cofactors has rank one at gimbal lock",

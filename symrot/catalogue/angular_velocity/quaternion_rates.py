@@ -66,8 +66,8 @@ def derive() -> Derivation:
         named=r"\frac{d}{dt} |q|^2",
     )
     d.step(
-        r"Then the direction cosine matrix rotates with the angular velocity $\omega_b$ (body components), in all "
-        "nine entries.",
+        r"With the rate $\dot q = \tfrac12\,q\,(0, \omega_b)$, the direction cosine matrix rotates with the angular "
+        r"velocity $\omega_b$ (body components), in all nine entries.",
         rate(dcm_sb, body),
         dcm_sb * skew(OMEGA),
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",
@@ -87,13 +87,14 @@ def derive() -> Derivation:
     d.section("Rates from the angular velocity in space")
     space = pairs(symbols.quaternion, quaternion_rates("space") * OMEGA_S)
     d.define(
-        "With the angular velocity in space components, the factors change "
-        r"places: the rate is half the product $(0, \omega_s)\,q$:",
+        "With the angular velocity in space components, the factors are in the opposite order: the rate of $q$ is half "
+        r"the product $(0, \omega_s)\,q$:",
         DQ,
         Matrix([*space.values()]),
     )
     d.step(
-        r"Then the direction cosine matrix rotates with the angular velocity $\omega_s$ (space components).",
+        r"With the rate $\dot q = \tfrac12\,(0, \omega_s)\,q$, the direction cosine matrix rotates with the angular "
+        r"velocity $\omega_s$ (space components).",
         rate(dcm_sb, space),
         skew(OMEGA_S) * dcm_sb,
         because="the matrix is quadratic in the quaternion, whose rate and norm are known",
@@ -102,8 +103,8 @@ def derive() -> Derivation:
         display=r"[\omega_s]_\times R",
     )
     d.step(
-        r"Both equations give the same rate: $\omega_s = R\,\omega_b$ in the equation for space gives the equation "
-        "for the body.",
+        r"The equations with $\omega_s$ and with $\omega_b$ give the same rate: $\omega_s = R\,\omega_b$ turns the "
+        "first equation into the second.",
         quaternion_rates("space") * dcm_sb * OMEGA,
         quaternion_product(Q, [0, *OMEGA]) / 2,
         because=r"$\omega_s = R\,\omega_b$",
@@ -119,7 +120,7 @@ def derive() -> Derivation:
         named="R(-q) - R(q)",
     )
     d.step(
-        "The equation for the rates is singular at no attitude.",
+        "The equation for the rates of the quaternion is singular at no attitude.",
         (quaternion_rates("body").T * quaternion_rates("body")).det() * 64,
         1,
         because=r"the matrix $M$ of $\dot q = M \omega_b$ has full rank at every unit quaternion",

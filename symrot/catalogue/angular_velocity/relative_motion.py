@@ -69,7 +69,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
     )
     d.step(
-        r"The second term of the acceleration points toward the axis through $P$ along $\omega$; its size is "
+        r"The centripetal term of the acceleration points toward the axis through $P$ along $\omega$; its size is "
         r"$|\omega|^2$ times the distance from this axis.",
         OMEGA.cross(OMEGA.cross(D)),
         OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
@@ -134,12 +134,12 @@ def _axis(d: Derivation) -> None:
     d.section("The axis of the motion")
     center = OMEGA.cross(V) / squared(OMEGA)
     d.notation({r"\omega": OMEGA, "v": V, "d_0": center, "d": D})
-    d.passage("From here on all vectors have components in one and the same frame. Consider the point of the body "
-        "with this offset $d_0$ from $P$:",
+    d.passage("From here on all vectors have components in one and the same frame. Consider the point of the body with "
+              "the following offset $d_0$ from $P$:",
             ("d_0", r"\frac{\omega \times v}{|\omega|^2}"))  # fmt: skip
     d.step(
-        r"The velocity of this point is along $\omega$, so every motion of a body is, at each instant, a screw motion "
-        "(Chasles, Mozzi).",
+        r"The velocity of the point at $d_0$ is along $\omega$, so every motion of a body is, at each instant, a screw "
+        "motion (Chasles, Mozzi).",
         V + OMEGA.cross(center),
         OMEGA * OMEGA.dot(V) / squared(OMEGA),
         because=r"$\omega \times (\omega \times v)$ is $-|\omega|^2$ times the component of $v$ perpendicular to "
@@ -150,7 +150,7 @@ def _axis(d: Derivation) -> None:
     plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}
     d.notation({r"\omega": OMEGA.subs(plane), "v": V.subs(plane), "d_0": center.subs(plane)})
     d.step(
-        "In plane motion this point is at rest: it is the instantaneous centre of rotation.",
+        "In plane motion the point at $d_0$ is at rest: it is the instantaneous centre of rotation.",
         (V + OMEGA.cross(center)).subs(plane),
         0,
         because="the velocity is perpendicular to the angular velocity",

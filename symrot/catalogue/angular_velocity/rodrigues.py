@@ -135,7 +135,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         display=rf"[B_s\,\dot {form.letter}]_\times R",
     )
     d.step(
-        "The matrix $B_s$ for space is the matrix $B_b$ for the body at the opposite parameters.",
+        "The matrix $B_s$ for space is the matrix $B_b$ for the body with the signs of all parameters reversed.",
         space.as_immutable(),
         body.as_immutable().xreplace(opposite),
         because="the two matrices differ by the sign of their skew part",

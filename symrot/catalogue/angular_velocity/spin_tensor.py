@@ -57,7 +57,7 @@ def _skewness(d: Derivation) -> None:
         display=r"\omega \times u",
     )
     d.step(
-        "The vector consists of three entries of the matrix.",
+        "The components of the vector are three entries of its skew matrix.",
         vee(skew(OMEGA_S)),
         OMEGA_S,
         because="the other nonzero entries of a skew matrix are their negatives",

@@ -48,8 +48,8 @@ def _forward(d: Derivation) -> None:
         named=r"v_\perp \cdot n",
     )
     d.step(
-        r"The product $n \times v$ is perpendicular to $v_\perp$ and has the same length; both vectors span the plane "
-        "of the rotation.",
+        r"The product $n \times v$ is perpendicular to $v_\perp$ and has the same length. The vectors $v_\perp$ and $n "
+        r"\times v$ span the plane of the rotation.",
         Matrix([squared(N.cross(V)), N.cross(V).dot(across)]),
         Matrix([squared(across), 0]),
         because=r"$|n \times v|^2 = |v|^2 - (n \cdot v)^2$",
@@ -59,7 +59,7 @@ def _forward(d: Derivation) -> None:
     )
     turned = along + cos(ALPHA) * across + sin(ALPHA) * N.cross(V)
     d.step(
-        r"In this plane the vector rotates by $\alpha$ (Rodrigues' formula).",
+        r"In the plane of the rotation, $v_\perp$ rotates by $\alpha$ (Rodrigues' formula).",
         turned,
         dcm_of_axis_angle() * V,
         because=r"a rotation by $\alpha$ maps $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",

@@ -53,7 +53,7 @@ def _product(d: Derivation) -> None:
         named="|p\\,q|^2",
     )
     d.step(
-        "The matrix of the product is the product of the matrices.",
+        "The matrix of a product of quaternions is the product of their matrices.",
         quaternion_to_dcm(quaternion_product(P, Q)),
         quaternion_to_dcm(P) * quaternion_to_dcm(Q),
         because=r"$p\,(q\,v\,\bar q)\,\bar p = (p q)\,v\,\overline{(p q)}$",
@@ -68,7 +68,7 @@ def _product(d: Derivation) -> None:
         r"\theta)$."
     )
     d.step(
-        "The scalar part of the product gives the angle of the product (Rodrigues).",
+        "The scalar part of the product of the two quaternions gives the angle of the whole rotation (Rodrigues).",
         product[0],
         cosine,
         because="the scalar part of a product of quaternions is the product of the scalar parts minus the "
@@ -82,7 +82,7 @@ def _product(d: Derivation) -> None:
         + sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K)
     )
     d.step(
-        "The vector part of the product gives the axis of the product.",
+        "The vector part of the product of the two quaternions gives the axis of the whole rotation.",
         Matrix(product[1:]),
         vector,
         because="the vector part of a product contains each vector times the scalar part of the other factor, and the "
@@ -98,7 +98,8 @@ def _order(d: Derivation) -> None:
     one = quaternion_product(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
     other = quaternion_product(quaternion_of_axis_angle(K, BETA), quaternion_of_axis_angle(N, ALPHA))
     d.step(
-        "In the other order the product has the same angle, and another axis unless the two axes are parallel.",
+        "In the opposite order, the two rotations give the same angle, and another axis unless the two axes are "
+        "parallel.",
         one - other,
         Matrix([0, *(2 * sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K))]),
         because="if the factors are exchanged, only the cross product changes its sign",
@@ -107,7 +108,7 @@ def _order(d: Derivation) -> None:
     )
     quarter_x, quarter_z = (elementary_rotation(axis, pi / 2) for axis in "XZ")
     d.step(
-        "The two orders of quarter rotations about $x$ and about $z$ give rotations about different axes.",
+        "Quarter rotations about $x$ and about $z$, in the two possible orders, give rotations about different axes.",
         Matrix.hstack(quarter_z * quarter_x, quarter_x * quarter_z),
         Matrix.hstack(*(dcm_of_axis_angle(Matrix([1, s, 1]) / sqrt(3), 2 * pi / 3) for s in (1, -1))),
         because="both products are rotations by 120 degrees, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",

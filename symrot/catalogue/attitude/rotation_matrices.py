@@ -50,8 +50,8 @@ def derive() -> Derivation:
         display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) u",
     )
     d.step(
-        "If this form is zero for every vector, its second derivatives are zero too: the matrix is orthogonal, "
-        r"$R^{\mathsf T} R = 1$.",
+        "If the quadratic form $|R u|^2 - |u|^2$ is zero for every vector $u$, its second derivatives are zero too: "
+        r"the matrix is orthogonal, $R^{\mathsf T} R = 1$.",
         hessian(change, U) / 2,
         excess,
         because="the symmetric matrix of a quadratic form is half the matrix of its second derivatives",
@@ -59,7 +59,7 @@ def derive() -> Derivation:
         display=r"R^{\mathsf T} R - 1",
     )
     d.step(
-        "Then the angles between vectors do not change either.",
+        r"If $R^{\mathsf T} R = 1$, the angles between vectors do not change either.",
         (MATRIX * U).dot(MATRIX * V) - U.dot(V),
         U.dot(excess * V),
         because=r"the same matrix $R^{\mathsf T} R$ occurs in the product of two different vectors",
@@ -76,8 +76,8 @@ def derive() -> Derivation:
         display=r"\left( \det R \right)^2",
     )
     d.passage(
-        "The determinant of a motion is continuous and 1 at the start, so it cannot jump to $-1$: the attitudes of a "
-        "body have determinant 1. Matrices of this kind are the rotations."
+        "During a motion the determinant of $R$ is continuous, and it is 1 at the start, so it cannot jump to $-1$: "
+        "the attitudes of a body have determinant 1. Matrices of this kind are the rotations."
     )
     d.step(
         r"If $R^{\mathsf T} R = 1$ and the determinant is 1, every entry equals its own cofactor: each column is the "

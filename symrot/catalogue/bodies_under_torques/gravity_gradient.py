@@ -102,7 +102,8 @@ def derive() -> Derivation:
         display=r"n\, k \cdot \tau",
     )
     d.step(
-        "The angular momentum about the normal of the orbit changes in the same way.",
+        r"The angular momentum about the normal of the orbit changes at the rate $k \cdot \tau$. This term also occurs "
+        "in the rate of the energy.",
         rate(K.dot(TENSOR * OMEGA), motion),
         torque.dot(K),
         because="the rate of a component of angular momentum along a fixed direction is the component of the torque",

@@ -51,7 +51,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
     d.notation({r"\dot L_s": torque, "L_s": momentum, "e_z": Matrix([0, 0, 1]), "A": A, "C": C})
     total = (C * (SPIN + PRECESSION * cos(THETA)) - A * PRECESSION * cos(THETA)) * PRECESSION * sin(THETA)
     d.step(
-        "The rate of the angular momentum is along the line of nodes. A steady precession needs this torque.",
+        r"The rate of the angular momentum is along the line of nodes. A steady precession needs a torque $\dot L_s$.",
         torque,
         total * line,
         because="the angular momentum lies in the plane of the vertical and the axle, and rotates with this plane",
@@ -61,7 +61,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
     )
     vertical = Matrix([0, 0, 1])
     d.step(
-        "This rate comes from the rotation of the angular momentum about the vertical.",
+        "The rate of the angular momentum comes from its rotation about the vertical.",
         torque,
         (PRECESSION * vertical).cross(momentum),
         because=r"$L_s$ rotates about the vertical at the rate $\dot\phi$",
@@ -84,8 +84,8 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]
     d.notation({"a": axle, r"\dot L_s": torque.subs(level), "c_3": ARM, "W": W})
     d.step(
-        "If the axle is horizontal, the term with $A$ vanishes. The torque is the product of the axial moment of "
-        "inertia and the rates of spin and precession.",
+        "If the axle is horizontal, the torque of precession does not contain $A$. The torque is the product of the "
+        "axial moment of inertia and the rates of spin and precession.",
         torque.subs(level),
         C * SPIN * PRECESSION * line,
         because=r"$\cos\frac\pi2 = 0$; the result is exact for slow and fast precession",
@@ -94,7 +94,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     )
     weight = (ARM * axle).cross(Matrix([0, 0, -W]))
     d.step(
-        "The weight $W$ of the wheel, at the distance $c_3$ from the support, has this moment.",
+        "The weight $W$ of the wheel, at the distance $c_3$ from the support, has a horizontal moment.",
         weight,
         W * ARM * line,
         because="the weight points down, and the arm is horizontal",
@@ -120,7 +120,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
         display="e",
     )
     d.step(
-        "If the axle is pushed around faster than this, it rises; if it is held back, it sinks. The difference "
+        "If the axle is pushed around faster than it precesses, it rises; if it is held back, it sinks. The difference "
         "between the moment of the weight and the torque of the precession acts about the line of nodes.",
         (weight - torque.subs(level)).dot(line),
         W * ARM - C * SPIN * PRECESSION,

@@ -47,7 +47,7 @@ def derive() -> Derivation:
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE, ROTOR)
     d.step(
-        "This rate equals the torque if the angular acceleration has this form.",
+        "The rate of the total angular momentum equals the torque if the angular acceleration has the following form.",
         TENSOR * acceleration + OMEGA.cross(momentum_b),
         TORQUE,
         because="the inertia tensor has an inverse",

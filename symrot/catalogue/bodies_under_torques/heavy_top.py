@@ -60,7 +60,7 @@ def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
     )
     spin = DPSI + DPHI * cos(THETA)
     d.step(
-        "These momenta are the angular momenta about the vertical and about the symmetry axis.",
+        r"The momenta $p_\phi$ and $p_\psi$ are the angular momenta about the vertical and about the symmetry axis.",
         Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]),
         Matrix([A * DPHI * sin(THETA) ** 2 + C * spin * cos(THETA), C * spin]),
         because="the Lagrangian is differentiated",
@@ -162,7 +162,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         (r"p_\phi", r"p_\psi \cos\theta + A\,n \sin^2\theta"),
     )
     d.step(
-        "The condition of steady precession is quadratic in the rate.",
+        "The condition of steady precession is quadratic in the rate $n$.",
         potential.diff(THETA).subs(steady),
         -sin(THETA) * slope,
         because="in steady precession the effective potential is stationary",
@@ -171,7 +171,8 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
     fast, slow = _rates()
     d.passage(
-        r"The condition has two roots, a fast and a slow rate. They are real for $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
+        r"The condition of steady precession has two roots, a fast and a slow rate. They are real for $p_\psi^2 \ge 4 "
+        r"A W c_3 \cos\theta$:",
         (r"n_\pm", r"\frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A W c_3 \cos\theta}}{2 A \cos\theta}"),
     )
     d.step(
@@ -182,8 +183,8 @@ def _steady(d: Derivation, potential: Expr) -> None:
         named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
     )
     d.step(
-        "The sum and the product of the two rates have simple forms. For a fast top the rates are therefore close to "
-        r"$p_\psi / (A \cos\theta)$, as without weight, and to $W c_3 / p_\psi$.",
+        "The sum and the product of the two rates of steady precession have simple forms. For a fast top the rates are "
+        r"therefore close to $p_\psi / (A \cos\theta)$, as without weight, and to $W c_3 / p_\psi$.",
         Matrix([fast + slow, fast * slow]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
         because="the coefficients of the quadratic equation give sum and product of its roots (Vieta)",
@@ -206,7 +207,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
         named=r"n^2\,\frac{\partial^2 U}{\partial \theta^2}",
     )
     d.step(
-        "This derivative is positive, so every steady precession is stable.",
+        r"In steady precession $\partial^2 U / \partial \theta^2$ is positive, so every steady precession is stable.",
         A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2,
         (A * RATE**2 - W * ARM * cos(THETA)) ** 2 + (W * ARM * sin(THETA)) ** 2,
         because=r"$\sin^2\theta + \cos^2\theta = 1$",

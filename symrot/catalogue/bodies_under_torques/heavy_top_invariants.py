@@ -94,7 +94,7 @@ def derive() -> Derivation:
         r" - \frac{\left( L_\gamma - C \omega_3\, u \right)^2}{A}",
     )
     d.passage(
-        r"By the energy, $2 E - C \omega_3^2 + 2 W c_3\, u = A (\omega_1^2 + \omega_2^2)$. $L_\gamma$ is the "
-        r"component of the angular momentum along $\gamma$."
+        r"The definition of the energy gives $2 E - C \omega_3^2 + 2 W c_3\, u = A (\omega_1^2 + \omega_2^2)$. "
+        r"$L_\gamma$ is the component of the angular momentum along $\gamma$."
     )
     return d

@@ -77,7 +77,10 @@ def _contacts(d: Derivation) -> Matrix:
 
 def _willis(d: Derivation, contacts: Matrix) -> None:
     d.section("Willis' formula")
-    d.passage("The gears do not slip, so both differences are zero:", *((entry, "0") for entry in contacts))
+    d.passage(
+        "The gears do not slip, so the velocity differences at both contacts are zero:",
+        *((entry, "0") for entry in contacts),
+    )
     d.step(
         "Relative to the carrier, sun and ring rotate in opposite directions, and their rates are in the inverse "
         "ratio of their numbers of teeth.",
@@ -134,8 +137,8 @@ def _willis(d: Derivation, contacts: Matrix) -> None:
         named=r"\omega_C",
     )
     d.step(
-        "If both have the same number of teeth, as in the differential of a car, the rate of the carrier is half the "
-        "sum of their rates.",
+        "If sun and ring have the same number of teeth, as in the differential of a car, the rate of the carrier is "
+        "half the sum of their rates.",
         solve(willis.subs(Z_R, Z_S), CARRIER)[0],
         (SUN + RING) / 2,
         because="the two weights in Willis' formula are equal",

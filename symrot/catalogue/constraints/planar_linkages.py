@@ -68,7 +68,8 @@ def _slider(d: Derivation) -> None:
     )
     steady = {PHI: DPHI, PSI: rod_rate}
     d.step(
-        "If the crank rotates steadily, the slider has this acceleration at the dead centre far from the crank.",
+        "If the crank rotates steadily, the slider has the following acceleration at the dead centre far from the "
+        "crank.",
         rate(velocity, steady).subs(ends),
         -CRANK * DPHI**2 * (1 + CRANK / ROD),
         because=r"the velocity is differentiated; at the dead centre the terms with $\sin\phi$ and $\sin\psi$ are zero",
@@ -88,7 +89,7 @@ def _slider(d: Derivation) -> None:
     force = symbols.F_x
     torque = solve(symbols.tau_3 * DPHI + force * velocity, symbols.tau_3)[0]
     d.step(
-        "This torque on the crank balances a force $F_x$ on the slider.",
+        r"A torque $\tau_3$ on the crank balances a force $F_x$ on the slider.",
         torque,
         force * CRANK * sin(PHI + PSI) / cos(PSI),
         because="without friction the sum of the powers of torque and force is zero",
@@ -107,7 +108,7 @@ def _four_bars(d: Derivation) -> None:
     )
     rates = solve(list(rate(closure, MOTION)), (DTHETA, DPSI), dict=True)[0]
     d.step(
-        "The condition gives the rates of coupler and rocker.",
+        "The condition that the bars form a closed polygon gives the rates of coupler and rocker.",
         Matrix([rates[DTHETA], rates[DPSI]]),
         DPHI * Matrix([a * sin(PHI - PSI) / (b * sin(PSI - THETA)), a * sin(PHI - THETA) / (c * sin(PSI - THETA))]),
         because="the condition that the polygon closes gives, if differentiated, two linear equations for the rates",
@@ -130,7 +131,7 @@ def _four_bars(d: Derivation) -> None:
         named=r"|c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2",
     )
     d.step(
-        "The time derivative of Freudenstein's equation gives the same rate of the rocker.",
+        "The time derivative of Freudenstein's equation gives the same rate of the rocker as the closed polygon.",
         rate(freudenstein, {PHI: DPHI, PSI: DPSI}),
         2 * a * DPHI * (ground * sin(PHI) + c * sin(PHI - PSI))
         - 2 * c * DPSI * (ground * sin(PSI) + a * sin(PHI - PSI)),

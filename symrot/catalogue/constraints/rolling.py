@@ -41,7 +41,7 @@ def _ball(d: Derivation) -> None:
         "point of contact, and has the velocity",
             ("v", r"R\;\omega \times n"))  # fmt: skip
     d.step(
-        "With this velocity of the centre, the point of contact is at rest.",
+        r"With the velocity $v = R\,\omega \times n$ of the centre, the point of contact is at rest.",
         velocity + OMEGA_S.cross(contact),
         0,
         because=r"the vector from the centre to the point of contact is $-R\,n$",
@@ -79,7 +79,7 @@ def _wheel(d: Derivation) -> None:
     velocity = rate(rim, motion)
     d.define("A point of the rim moves along a cycloid:", "r", rim)
     d.step(
-        "This point has the velocity of a rotation about the point of contact.",
+        "A point of the rim has the velocity of a rotation about the point of contact.",
         velocity,
         symbols.dtheta * Matrix([rim[1], R * THETA - rim[0]]),
         because="the point of contact is the instantaneous centre",
@@ -87,8 +87,8 @@ def _wheel(d: Derivation) -> None:
         display=r"\dot\theta \begin{bmatrix} y \\ R\,\theta - x \end{bmatrix}",
     )
     d.step(
-        "When the point touches the ground, its velocity is zero, but its acceleration is not: it points toward the "
-        "centre.",
+        "When a point of the rim touches the ground, its velocity is zero, but its acceleration is not: the "
+        "acceleration points toward the centre.",
         Matrix.hstack(velocity, rate(velocity, motion)).subs(THETA, 0),
         Matrix([[0, 0], [0, R * symbols.dtheta**2]]),
         because="the centre moves on a straight line, and the point rotates about the centre",
@@ -112,7 +112,8 @@ def _slope(d: Derivation) -> None:
     )
     solution = solve(equations, (acceleration, friction), dict=True)[0]
     d.step(
-        "The acceleration is smaller than that of a sliding body, because part of the energy goes into the rotation.",
+        "A rolling body has a smaller acceleration than a sliding body, because part of the energy goes into the "
+        "rotation.",
         solution[acceleration],
         G * sin(slope) / (1 + gyration / (M * R**2)),
         because="friction is eliminated",
@@ -120,7 +121,7 @@ def _slope(d: Derivation) -> None:
     )
     speed = symbols.v_x
     d.step(
-        "This acceleration also conserves the energy, since friction does no work.",
+        "The acceleration of the rolling body also conserves the energy, since friction does no work.",
         rate(
             HALF * M * speed**2 + HALF * gyration * (speed / R) ** 2 - M * G * symbols.x * sin(slope),
             {speed: solution[acceleration], symbols.x: speed},
@@ -140,7 +141,7 @@ def _slope(d: Derivation) -> None:
         named=r"\frac{a_x}{g \sin\alpha}",
     )
     d.step(
-        r"The body slips if this ratio of friction to normal force exceeds the friction coefficient $\mu_f$.",
+        r"The body slips if the ratio of friction to normal force exceeds the friction coefficient $\mu_f$.",
         solution[friction] / (M * G * cos(slope)),
         gyration / (gyration + M * R**2) * sin(slope) / cos(slope),
         because="the equations are solved for the friction",

@@ -56,8 +56,8 @@ def derive() -> Derivation:
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE)
     d.step(
-        "This rate equals the torque if the angular acceleration follows Euler's equations, here for the full inertia "
-        "tensor.",
+        "The rate of the angular momentum equals the torque if the angular acceleration follows Euler's equations, "
+        "here for the full inertia tensor.",
         moving.subs(pairs(symbols.omega_rates, acceleration)),
         TORQUE,
         because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the inertia tensor has an inverse",

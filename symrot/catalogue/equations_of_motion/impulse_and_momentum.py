@@ -118,7 +118,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
     )
     after = HALF * (speed + N.dot(MOBILITY * blow) + speed) * blow.dot(N)
     d.step(
-        r"The impact loses this energy; nothing is lost at $\epsilon = 1$.",
+        r"The impact loses the following energy, which is zero at $\epsilon = 1$.",
         -after,
         HALF * (1 - restitution**2) * speed**2 / give,
         because="the work of a blow is its impulse times the mean of the velocities before and after the blow",

@@ -131,7 +131,8 @@ def _braked(d: Derivation) -> None:
     power = -DRAG * T / C
     d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
     d.step(
-        "The same rate and angle are written with $f_1$ and $f_2$; these formulas also hold without damping.",
+        "The rate and the angle under a torque with damping are written with $f_1$ and $f_2$; these formulas also hold "
+        "without damping.",
         Matrix([speed, angle]),
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
         because="the equation is multiplied by the denominators",
@@ -156,8 +157,8 @@ def _across(d: Derivation) -> None:
     d.notation({r"\theta": symbols.theta})
     omega = Matrix([first * cos(turn) - second * sin(turn), first * sin(turn) + second * cos(turn), symbols.Omega])
     d.passage(
-        r"The moments are $A, A, C$. $\Omega$ is the rate $\omega_3(t)$ and $\theta$ the angle of one of the two "
-        r"sections above. With the initial values $\omega_1, \omega_2$:",
+        r"The moments are $A, A, C$. $\Omega$ is the rate $\omega_3(t)$ and $\theta$ the angle of the rotation about "
+        r"the axis, with or without a brake. With the initial values $\omega_1, \omega_2$:",
         (r"\omega(t)", omega),
         (r"\omega_1(t)", omega[0]),
         (r"\omega_2(t)", omega[1]),
@@ -197,7 +198,8 @@ def _attitude(d: Derivation) -> None:
     first, second = q0 + I * q3, q1 + I * q2
     d.notation({r"\alpha": first, r"\beta": second, "i": I}, motion)
     d.step(
-        "The two numbers satisfy the equations of a two-level system that is swept through resonance.",
+        r"The numbers $\alpha$ and $\beta$ satisfy the equations of a two-level system that is swept through "
+        "resonance.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
         because="the rates of the quaternion are written as two complex equations",
@@ -241,9 +243,9 @@ def _by_kummer(d: Derivation) -> None:
     )
     d.notation({r"\alpha": first, r"\beta": second, "M": value, "N": slope, "E": phase, "i": I}, motion)
     d.step(
-        r"These $\alpha$ and $\beta$ satisfy the equations. They describe axes that coincide with the axes of space "
-        r"at $\Omega = 0$, where $\alpha = 1$ and $\beta = 0$. For any other initial attitude, the quaternion is a "
-        "constant quaternion times this one.",
+        r"The $\alpha$ and $\beta$ defined with Kummer's function satisfy the equations of the two-level system. They "
+        r"describe axes that coincide with the axes of space at $\Omega = 0$, where $\alpha = 1$ and $\beta = 0$. For "
+        "any other initial attitude, the quaternion is a constant quaternion times this one.",
         rate(Matrix([first, second]), motion),
         HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
         because="Kummer's equation gives $dN/dz$",
@@ -261,7 +263,8 @@ def _by_kummer(d: Derivation) -> None:
     )
     d.notation({"S": speed, "Z": area}, swept)
     d.step(
-        "The integral of $S$ over time is elementary. It is the phase of a slow sweep.",
+        "The integral of $S$ over time is elementary. It is called the phase: in a slow sweep, the axes rotate by this "
+        "angle about the angular velocity, whose direction changes slowly.",
         rate(angle, swept),
         speed,
         because=r"$S^2 = \Omega^2 + \omega_1^2$",
@@ -295,7 +298,7 @@ def _far(d: Derivation) -> None:
     d.notation({"n": n, r"\kappa": kappa, "r": r, "x": x}, motion)
     d.step(
         "The vector $n$ is fixed in space. Far from resonance it is close to the axis of rotation, and the body "
-        "rotates about it by the phase above, except for a small angle.",
+        r"rotates about it by the phase $\int S\,dt$, except for a small angle.",
         rate(n, motion),
         n.cross(Matrix([kappa, 0, x])),
         because="in body components, a vector that is fixed in space rotates backwards",

@@ -143,8 +143,9 @@ def _zeta(d: Derivation) -> None:
         display=r"-\frac{2 \mu\,\mathrm{sn}_w\,\mathrm{cn}_w\,\mathrm{dn}_w\,\mathrm{sn}^2}{\Delta}",
     )
     d.passage(
-        "The integral of this function over $u$ is called an elliptic integral of the third kind. The next section "
-        "shows that an angle with this rate is the argument of a theta function, so the integral need not be computed."
+        "The integral of $Z(u + w) - Z(u - w) - 2 Z(w)$ over $u$ is called an elliptic integral of the third kind. The "
+        "next section shows that an angle with this rate is the argument of a theta function, so the integral need not "
+        "be computed."
     )
 
 
@@ -187,8 +188,8 @@ def _imaginary(d: Derivation) -> None:
     d.notation({rf"\mathrm{{{name}}}_w": value for name, value in zip(("sn", "cn", "dn"), values, strict=True)})
     d.notation({"i": I, "time": "a"}, along)
     d.step(
-        "The three functions satisfy the defining equations, with the factor $i$ because the derivative is taken with "
-        "respect to $a$. At $a = 0$ they have the values $0, 1, 1$.",
+        "At the argument $i a$, the three functions satisfy the defining equations, with the factor $i$ because the "
+        "derivative is taken with respect to $a$. At $a = 0$ they have the values $0, 1, 1$.",
         Matrix([rate(value, along) for value in values]),
         I * Matrix([values[1] * values[2], -values[0] * values[2], -MU * values[0] * values[1]]),
         because=r"$\mathrm{dn}^2 - \mathrm{cn}^2 = \mu\,\mathrm{sn}^2$ for the parameter $1 - \mu$",

@@ -111,7 +111,8 @@ def _two_turns(d: Derivation) -> None:
         (r"\dot\psi", r"\frac{2 T + H\,\omega_3}{H + L_3}"),
     )
     d.step(
-        "Then $R$ satisfies the equation of the attitude, in all nine entries.",
+        r"With $\dot\psi = (2 T + H\,\omega_3)/(H + L_3)$, the matrix $R = R_3(\psi)\,P$ satisfies the equation of the "
+        "attitude, in all nine entries.",
         rate(about * smallest, along | {PSI: speed}),
         about * smallest * skew(OMEGA),
         because=r"$\dot L = L \times \omega$ for the components of $P$",
@@ -121,7 +122,7 @@ def _two_turns(d: Derivation) -> None:
     )
     d.notation({"T": T, r"\dot\psi": turning_rate()})
     d.step(
-        "The rate is the sum of a constant and a part that depends only on $L_3$.",
+        r"The rate of $\psi$ is the sum of a constant and a part that depends only on $L_3$.",
         turning_rate(),
         H / C + (2 * T - H**2 / C) / (H + L3),
         because=r"$\omega_3 = L_3 / C$, and $\frac{H}{C} (H + L_3)$ is split off from the numerator",
@@ -131,8 +132,9 @@ def _two_turns(d: Derivation) -> None:
     polar = rate(L2, along) * L1 - rate(L1, along) * L2
     precession = H * (L1**2 / A + L2**2 / B) / (L1**2 + L2**2)
     d.step(
-        "The rate is the precession in the angles [ZXZ](free_asymmetric_body.md) minus the rate at which $(L_1, L_2)$ "
-        "rotates in the body. Both of these are singular if $L$ is along axis 3; their difference is regular.",
+        r"The rate of $\psi$ is the rate of precession in the angles [ZXZ](free_asymmetric_body.md) minus the rate at "
+        "which $(L_1, L_2)$ rotates in the body. Both of these rates are singular if $L$ is along axis 3; their "
+        "difference is regular.",
         speed,
         precession - polar / (L1**2 + L2**2),
         because=r"$\dot L = L \times \omega$",
@@ -166,7 +168,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     d.nonzero("and so are the moments of axes 1 and 3,", C - A, "C - A")
     d.notation({"H": sqrt(ONE**2 + THREE**2), "T": momentum.dot(omega) / 2})
     d.step(
-        r"This $L$ satisfies Euler's equations for both values of $\sigma$.",
+        r"The angular momentum $L$ with sn, cn and dn satisfies Euler's equations for both values of $\sigma$.",
         rate(momentum, along),
         momentum.cross(omega),
         because="the derivative of each elliptic function is a multiple of the product of the two other functions",
@@ -201,7 +203,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         display=r"\ell_1^2 + \mu\,\ell_3^2",
     )
     d.step(
-        "The parameter is 1 on the separatrix, where $H^2 = 2 T B$, and less than 1 elsewhere.",
+        r"The parameter $\mu$ is 1 on the separatrix, where $H^2 = 2 T B$, and less than 1 elsewhere.",
         (1 - parameter) * THREE**2 * A * (C - B),
         C * A * (C - B) / C * THREE**2 - C * (B - A) * ONE**2,
         because="both sides of the equation are expanded",
@@ -209,7 +211,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         named=r"(1 - \mu)\,A (C - B)\,\ell_3^2",
     )
     d.step(
-        "The right side of the previous equation contains energy and angular momentum only.",
+        r"The numerator of $1 - \mu$ contains energy and angular momentum only.",
         A * (C - B) * THREE**2 - C * (B - A) * ONE**2,
         A * C * ((ONE**2 + THREE**2) - B * (ONE**2 / A + THREE**2 / C)),
         because="both sides of the equation are expanded",
@@ -252,7 +254,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     rate_of_turn = turning_rate().subs({T: energy, L3: THREE * DN})
     d.notation({r"\dot\psi": rate_of_turn})
     d.step(
-        r"Hence the rate, expressed with $\ell_2$ and $p$, is:",
+        r"Hence the rate of $\psi$, expressed with $\ell_2$ and $p$, is:",
         rate_of_turn,
         H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below,
         because="the two previous steps are substituted",
@@ -294,7 +296,8 @@ def _theta(d: Derivation) -> None:
         "a function of sn and dn."
     )
     d.step(
-        "This function is a constant minus the variable term in the rate of the third angle.",
+        "In the derivative of the argument of $N(u + w)$, the function of sn and dn is a constant minus the variable "
+        r"term in the rate of $\psi$.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "
@@ -360,4 +363,7 @@ def _special(d: Derivation) -> None:
         relations=LENGTH,
         named=r"\left. \begin{bmatrix} \dot\psi \\ \dot L \end{bmatrix} \right|_{A = B = C}",
     )
-    d.passage("On the separatrix all these functions are elementary: see [the separatrix](free_body_separatrix.md).")
+    d.passage(
+        "On the separatrix, angular velocity and attitude are elementary functions of time: see [the "
+        "separatrix](free_body_separatrix.md)."
+    )

@@ -119,8 +119,8 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
     d.notation({"p": P}, {TIME: Integer(1)} | _share(P))
     turned = H / MIDDLE * TIME - 2 * SIGN * atan(ONE * h / (H + THREE))
     d.step(
-        "The angle of this rotation is the sum of a part that grows at a constant rate and an arctangent, which "
-        "changes by a finite amount during the whole motion.",
+        r"The angle $\psi$ of the rotation about the angular momentum is the sum of a part that grows at a constant "
+        "rate and an arctangent, which changes by a finite amount during the whole motion.",
         rate(turned, {TIME: Integer(1)} | _share(P)),
         H / MIDDLE - SIGN * P * momentum[0] / (H + momentum[2]),
         because=r"$H^2 - \ell_3^2 = \ell_1^2$",
@@ -133,7 +133,8 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         {"R": rotation, "p": SPEED}, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}
     )
     d.step(
-        r"The attitude $R = R_3(\psi)\,P$ with this angle satisfies the equation of the attitude, in all nine entries.",
+        r"The attitude $R = R_3(\psi)\,P$ with this angle $\psi$ satisfies the equation of the attitude, in all nine "
+        "entries.",
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
         rotation * skew(omega),
         because="the rates of the previous steps are substituted",

@@ -63,7 +63,7 @@ def _nutation(d: Derivation) -> None:
     d.notation({"u": u, r"p_\phi": momentum, r"p_\psi": spin, r"2 E - \frac{p_\psi^2}{C}": energy})
     d.notation({"E": (energy + spin**2 / C) / 2})
     d.step(
-        "With these constants, the cubic polynomial of energy and momenta has the zeros $u_1, u_2, u_3$.",
+        "The cubic polynomial of energy and momenta has the zeros $u_1, u_2, u_3$.",
         (energy - 2 * W * ARM * u) * (1 - u**2) / A - (momentum - spin * u) ** 2 / A**2,
         cubic(u),
         because="both sides are cubics with equal values at $u = 1$ and $u = -1$ and two equal coefficients",
@@ -82,7 +82,7 @@ def _nutation(d: Derivation) -> None:
     speed = rate(HEIGHT, along)
     d.notation({"u": HEIGHT}, along)
     d.step(
-        "The square of the rate of this height equals the cubic polynomial.",
+        "The square of the rate of the height $u$ equals the cubic polynomial.",
         speed**2,
         cubic(HEIGHT),
         because=r"$u - u_1$, $u_2 - u$ and $u_3 - u$ are the squares of sn, cn and dn, times constants",
@@ -91,8 +91,8 @@ def _nutation(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        "The acceleration of this height is half the derivative of the cubic polynomial, as it must be. This excludes "
-        "a solution that stays where the rate is zero.",
+        "The acceleration of the height $u$ is half the derivative of the cubic polynomial, as it must be. This "
+        "excludes a solution whose height stays at a zero of the polynomial.",
         rate(speed, along),
         cubic(u).diff(u).subs(u, HEIGHT) / 2,
         because="the previous step is differentiated and divided by $\\dot u$; the result is proven separately",
@@ -110,8 +110,8 @@ def _rates(d: Derivation) -> None:
     rates = {r"\dot\phi": dphi, r"\dot\psi": dpsi}
     d.notation({r"p_\phi": P_PHI, r"p_\psi": P_PSI} | rates)
     d.step(
-        "The sum and the difference of both rates have simpler forms: the sum is singular only if the axis points "
-        "straight down, the difference only if it points straight up.",
+        "The sum and the difference of the rates of precession and spin have simpler forms: the sum is singular only "
+        "if the axis points straight down, the difference only if it points straight up.",
         Matrix([dphi + dpsi, dphi - dpsi]),
         Matrix(
             [
@@ -148,7 +148,7 @@ def _attitude(d: Derivation) -> None:
     turns = {f"R_{n}": lambda angle, axis=axis: elementary_rotation(axis, angle) for n, axis in ((1, "X"), (3, "Z"))}
     d.notation({"R": quaternion_to_dcm, "q": Matrix(quaternion)} | turns)
     d.step(
-        "This quaternion gives the rotation of the Euler angles ZXZ.",
+        r"The quaternion of $\alpha$ and $\beta$ gives the rotation of the Euler angles ZXZ.",
         quaternion_to_dcm(quaternion),
         dcm("ZXZ"),
         because="cosine and sine of each angle follow from those of its half",
@@ -161,7 +161,7 @@ def _attitude(d: Derivation) -> None:
                         rate(sin(THETA / 2), {THETA: symbols.dtheta}) / sin(THETA / 2)])  # fmt: skip
     d.notation({"u": u, r"\dot u": du})
     d.step(
-        r"The logarithms of $|\alpha|$ and $|\beta|$ have these rates.",
+        r"The rates of the logarithms of $|\alpha|$ and $|\beta|$ follow from the height $u = \cos\theta$.",
         logarithm,
         Matrix([du / (2 * (1 + u)), -du / (2 * (1 - u))]),
         because=r"$\cos^2 \tfrac\theta2 = \tfrac12 (1 + u)$, $\sin^2 \tfrac\theta2 = \tfrac12 (1 - u)$",
@@ -204,15 +204,16 @@ def _theta(d: Derivation) -> None:
         sign_text = sign if sign == "-" else "+"
         d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
-            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$; there $1 {sign_text} u$ is zero. "
-            rf"Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have these values.",
+            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Where $\mathrm{{sn}} = "
+            rf"\mathrm{{sn}}_w$, $1 {sign_text} u$ is zero. Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have the "
+            "following values.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
             because="the two quadratic relations between sn, cn and dn are substituted",
             named=r"\begin{bmatrix} 1 - \mathrm{sn}_w^2 \\ 1 - \mu\,\mathrm{sn}_w^2 \end{bmatrix}",
         )
         d.step(
-            "The denominator is proportional to $1 + u$ or $1 - u$.",
+            r"The denominator $\mathrm{sn}^2 - \mathrm{sn}_w^2$ is proportional to $1 + u$ or $1 - u$.",
             (U2 - U1) * (SN**2 - s2),
             side * (1 + side * HEIGHT),
             because="$u = u_1 + (u_2 - u_1)\\,\\mathrm{sn}^2$",
@@ -220,7 +221,8 @@ def _theta(d: Derivation) -> None:
             display="1 + u" if side == 1 else "-(1 - u)",
         )
         d.step(
-            r"The real part of the logarithmic derivative is the rate of $\ln |\alpha|$ or $\ln |\beta|$.",
+            r"The real part of the logarithmic derivative of $\mathrm{H}(u + w) / \Theta(u)$ is the rate of $\ln "
+            r"|\alpha|$ or $\ln |\beta|$.",
             SPEED * SN * CN * DN / (SN**2 - s2),
             side * rate(HEIGHT, along) / (2 * (1 + side * HEIGHT)),
             because=r"$\dot u = 2 (u_2 - u_1)\,p\,\mathrm{sn}\,\mathrm{cn}\,\mathrm{dn}$",
@@ -228,10 +230,9 @@ def _theta(d: Derivation) -> None:
             display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
-            rf"The imaginary part is, up to a constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of "
-            rf"$w$ is chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = \mp i\,"
-            rf"\frac{{p_\phi {sign} p_\psi}}"
-            r"{2 A\,p\,(u_2 - u_1)}$.",
+            r"The imaginary part of the logarithmic derivative is, up to a constant, the rate of $\tfrac12 (\phi "
+            rf"{sign} \psi)$, if the sign of $w$ is chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = "
+            rf"\mp i\,\frac{{p_\phi {sign} p_\psi}}{{2 A\,p\,(u_2 - u_1)}}$.",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,
             because=r"$p$ and the momenta are substituted in terms of the zeros",

@@ -146,7 +146,8 @@ def _spherical(d: Derivation) -> None:
     energy = 2 * W * ARM * (U1 + U2 + highest)
     d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
     d.step(
-        r"The cubic polynomial of energy and momentum has these three zeros if $p_\phi^2$ has the value below.",
+        r"The cubic polynomial of energy and momentum has the zeros $u_1$, $u_2$ and $u_3$ if $p_\phi^2$ has the value "
+        "below.",
         energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,
         cubic(u).subs(U3, highest),
         because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",
@@ -162,7 +163,7 @@ def _spherical(d: Derivation) -> None:
         named=r"p_\phi^2\,(u_1 + u_2)",
     )
     d.step(
-        "If both heights are equal, the pendulum moves on a cone. The square of its rate is:",
+        "If both heights are equal, the pendulum moves on a cone. The square of its rate about the vertical is:",
         square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
         -W * ARM / (A * U1),
         because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",

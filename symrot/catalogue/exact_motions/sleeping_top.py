@@ -74,8 +74,9 @@ def _through(d: Derivation) -> None:
         named=r"\left. \left( \frac{d}{dt} \sin\tfrac\theta2 \right)^2 \right|_{u = 1}",
     )
     d.passage(
-        r"At this moment $\phi - \psi$ changes at a constant rate, by the [partial fractions](heavy_top_motion.md) "
-        r"with $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ is given a sign, the attitude is a smooth function of time."
+        r"When the axis passes through the vertical, $\phi - \psi$ changes at a constant rate, by the [partial "
+        r"fractions](heavy_top_motion.md) with $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ is given a sign, the attitude "
+        "is a smooth function of time."
     )
 
 
@@ -92,7 +93,7 @@ def _separatrix(d: Derivation) -> None:
         ("h", tanh(P * T)),
     )
     d.step(
-        r"The derivative of the hyperbolic tangent is $p\,(1 - h^2)$.",
+        r"The derivative of the hyperbolic tangent $h$ is $p\,(1 - h^2)$.",
         tanh(P * T).diff(T),
         P * (1 - tanh(P * T) ** 2),
         because=r"$\tanh' = 1 - \tanh^2$",
@@ -107,7 +108,7 @@ def _separatrix(d: Derivation) -> None:
     along = {h: speed * (1 - h**2)}
     d.notation({"u": height, "h": h}, along)
     d.step(
-        "The square of the rate of this height equals the cubic polynomial of the heavy top.",
+        "The square of the rate of the height $u$ equals the cubic polynomial of the heavy top.",
         rate(height, along) ** 2,
         cubic(height).subs(both),
         because="$u - 1$ is a double factor of the cubic",
@@ -115,7 +116,7 @@ def _separatrix(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
     )
     d.step(
-        "The acceleration of this height is half the derivative of the cubic polynomial, as it must be.",
+        "The acceleration of the height $u$ is half the derivative of the cubic polynomial, as it must be.",
         rate(rate(height, along), along),
         cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
         because="the acceleration of the height is half the derivative of the cubic",

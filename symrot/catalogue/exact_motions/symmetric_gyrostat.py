@@ -112,8 +112,8 @@ def _attitude(d: Derivation) -> None:
         }
     )  # fmt: skip
     d.step(
-        r"This attitude satisfies the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + \nu\,e_3$, "
-        "where $n_b$ is the direction $n$ in body components.",
+        r"The attitude $q(t)$ satisfies the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + "
+        r"\nu\,e_3$, where $n_b$ is the direction $n$ in body components.",
         attitude.diff(T),
         quaternion_rates("body", attitude) * omega,
         because="a left factor of the quaternion rotates about an axis of space, a right factor about an "

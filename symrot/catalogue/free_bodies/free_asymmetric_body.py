@@ -130,7 +130,7 @@ def _constants(d: Derivation) -> None:
     square = A**2 * FIRST**2 + C**2 * THIRD**2
     d.notation({"T": twice / 2, "L": sqrt(square)})
     d.step(
-        "The energy and the angular momentum give the amplitudes.",
+        "The energy and the angular momentum give the amplitudes of the elliptic functions.",
         amplitudes.multiply_elementwise(amplitudes),
         Matrix(
             [
@@ -161,7 +161,7 @@ def _constants(d: Derivation) -> None:
         display=r"\frac{(B - C) (2 T A - L^2)}{(A - B) (L^2 - 2 T C)}",
     )
     d.step(
-        "The parameter is 1 on the separatrix, where $L^2 = 2 T B$, and less than 1 for $L^2 > 2 T B$.",
+        r"The parameter $\mu$ is 1 on the separatrix, where $L^2 = 2 T B$, and less than 1 for $L^2 > 2 T B$.",
         (1 - parameter) * (A - B) * (square - twice * C),  # type: ignore[operator]
         (A - C) * (square - twice * B),
         because="both sides of the equation are expanded",

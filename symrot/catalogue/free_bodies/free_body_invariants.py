@@ -83,8 +83,8 @@ def derive() -> Derivation:
     along = pairs(symbols.omega_b, angular_acceleration(inertia, OMEGA, NONE))
     doubled = OMEGA.dot(inertia * OMEGA)
     d.step(
-        r"Along principal axes, a combination of the two invariants does not contain $\omega_3$. It describes an "
-        "ellipse or a hyperbola.",
+        r"Along principal axes, a combination of the energy and the angular momentum does not contain $\omega_3$. It "
+        "describes an ellipse or a hyperbola.",
         squared(inertia * OMEGA) - c * doubled,
         a * (a - c) * symbols.omega_1**2 + b * (b - c) * symbols.omega_2**2,
         because="both invariants are quadratic, and the terms along axis 3 cancel",

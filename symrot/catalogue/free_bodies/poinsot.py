@@ -129,8 +129,8 @@ def _polhode(d: Derivation) -> None:
         {"A": A.subs(ordered), "B": B.subs(ordered), "T": TWICE_ENERGY.subs(ordered) / 2, "L": MOMENTUM.subs(ordered)}
     )
     d.step(
-        r"For $A > B > C$, written as $B = C + \delta_1$ and $A = B + \delta_2$, the left sides of both ellipses are "
-        r"sums of squares. So $2 T C \le L^2 \le 2 T A$.",
+        r"For $A > B > C$, written as $B = C + \delta_1$ and $A = B + \delta_2$, the left sides of the equations of "
+        r"both ellipses are sums of squares. So $2 T C \le L^2 \le 2 T A$.",
         Matrix([SQUARE - TWICE_ENERGY * C, TWICE_ENERGY * A - SQUARE]).subs(ordered),
         Matrix(
             [
@@ -168,7 +168,8 @@ def _herpolhode(d: Derivation) -> None:
     )
     along = OMEGA.dot(MOMENTUM) / SQUARE * MOMENTUM
     d.step(
-        "The point of contact has this distance from the foot of the perpendicular from the centre to the plane.",
+        "The square of the distance of the point of contact from the foot of the perpendicular from the centre to the "
+        r"plane is $|\omega|^2$ minus a constant.",
         squared(OMEGA - along),
         squared(OMEGA) - TWICE_ENERGY**2 / SQUARE,
         because=r"the component of $\omega$ along $L$ is $2 T / |L|$",
@@ -184,7 +185,8 @@ def _herpolhode(d: Derivation) -> None:
         named=r"\dot\omega \cdot L",
     )
     d.step(
-        "For two equal moments this distance is constant: polhode and herpolhode are circles.",
+        "For two equal moments the distance of the point of contact from the foot of the perpendicular is constant: "
+        "polhode and herpolhode are circles.",
         rate(squared(across), FREE).subs(B, A),
         0,
         because=r"the factor $A - B$ is zero",

@@ -42,7 +42,7 @@ def _vector(d: Derivation) -> None:
     )
     older = indexed("a", K, -2)
     d.step(
-        "The second equation gives the difference of $b_k$ and $a_k$.",
+        "The second equation for the series $a, b, c$ gives the difference of $b_k$ and $a_k$.",
         coefficient({"b": {0: S.One}, "a": {0: -S.One}, "c": {0: 3 * V**2, 1: 2 * V**3}}, V, K),
         b - a - (2 * K - 1) * (2 * K - 3) * older,
         because="the first equation gives $c_{k-2}$",
@@ -50,8 +50,8 @@ def _vector(d: Derivation) -> None:
         named=r"[v^k] \left( b - a + v^2 (3 c + 2 v c') \right)",
     )
     d.step(
-        "The third equation gives $b_{k+1}$ from this difference. So the equations give all coefficients one after "
-        "another.",
+        "The third equation for the series $a, b, c$ gives $b_{k+1}$ from $b_k - a_k$. So the three equations give all "
+        "coefficients one after another.",
         coefficient({"b": {1: 2 * (1 - KAPPA**2 * V), 0: -(KAPPA**2)}, "c": {0: -(KAPPA**2)}}, V, K),
         2 * (K + 1) * indexed("b", K, 1) - KAPPA**2 * (2 * K + 1) * (b - a),
         because="the first equation gives $c_k$",
@@ -98,7 +98,7 @@ def _small_angle(d: Derivation) -> None:
         r"$\delta = \frac{x}{r} e(v)$, where $e$ satisfies $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
     )
     d.step(
-        r"Then $\delta$ has the rate of the small angle.",
+        r"The function $\delta$ has the rate of the small angle.",
         rate(X / R * e, motion).subs(h, -c / (1 + third)),
         -KAPPA / R**2 * (KAPPA / R**3 * c) / (1 + third),
         because=r"$\frac{d}{dx} \frac{x}{r} = \kappa^2 / r^3$, and $\dot v = -2 x v^2$",
@@ -125,9 +125,9 @@ def near(d: Derivation) -> None:
     second = {names[1]: {1: S(2), 0: I * (place + step)}, names[0]: {0: -KAPPA}}
     (a1, a, a0), (b1, b, b0) = ([indexed(name, K, shift) for shift in (1, 0, -1)] for name in names)
     d.passage(
-        r"In the same unit of time, the attitude satisfies $2 \alpha' = i x \alpha - \kappa \beta$ and $2 \beta' = "
-        r"\kappa \alpha - i x \beta$. Near a time $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = \sum \beta_k u^k$ "
-        "with $u = x - X$."
+        r"With $\dot\Omega^{-1/2}$ as the unit of time, the attitude satisfies $2 \alpha' = i x \alpha - \kappa \beta$ "
+        r"and $2 \beta' = \kappa \alpha - i x \beta$. Near a time $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = "
+        r"\sum \beta_k u^k$ with $u = x - X$."
     )
     d.step(
         "The coefficient of $u^k$ in both equations is zero. So each coefficient of the series follows from the two "
@@ -148,9 +148,9 @@ def near(d: Derivation) -> None:
     }
     pair = Matrix([there, -across])
     d.step(
-        r"Before resonance, $\alpha(-x)$ and $-\beta(-x)$ satisfy the same equations. So for the initial values "
-        r"$\alpha = 1$, $\beta = 0$ at $x = 0$, the attitudes at $x$ and $-x$ differ only in the sign of $q_1$ and "
-        "$q_2$.",
+        r"Before resonance, $\alpha(-x)$ and $-\beta(-x)$ satisfy the same equations as $\alpha(x)$ and $\beta(x)$. So "
+        r"for the initial values $\alpha = 1$, $\beta = 0$ at $x = 0$, the attitudes at $x$ and $-x$ differ only in "
+        "the sign of $q_1$ and $q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
         because="time and sweep both change sign",
@@ -166,9 +166,9 @@ def weak(d: Derivation) -> None:
     f = sqrt(1 + 2 * c * h + h**2)
     start, speed, across, sweep, time = (Symbol(name) for name in ("Omega_0", "S_0", "W", "s", "t"))
     d.passage(
-        r"If the sweep $s = \dot\Omega$ is small, the formula above gives the phase since the start as a small "
-        r"difference of large numbers. Therefore a series is used. Let $S_0$ and $\Omega_0$ be the initial values, "
-        r"$W$ the transverse rate, $c = \Omega_0/S_0$ and $h = s t / S_0$."
+        r"If the sweep $s = \dot\Omega$ is small, the integral of $S = \sqrt{\Omega^2 + W^2}$ in closed form gives the "
+        "phase since the start as a small difference of large numbers. Therefore a series is used. Let $S_0$ and "
+        r"$\Omega_0$ be the initial values, $W$ the transverse rate, $c = \Omega_0/S_0$ and $h = s t / S_0$."
     )
     d.step(
         r"The rate of the phase is $S_0 f$ with $f = \sqrt{1 + 2 c h + h^2}$.",
@@ -190,8 +190,8 @@ def weak(d: Derivation) -> None:
     above, now, before = (indexed("a", K, shift) for shift in (1, 0, -1))
     recurrence = (K + 1) * above - (1 - 2 * K) * c * now - (2 - K) * before
     d.step(
-        r"Let $f = \sum a_k h^k$. The coefficient of $h^k$ in this equation is zero. So with $a_0 = 1$ and $a_{-1} = "
-        "0$, each coefficient follows from the two coefficients before it.",
+        r"Let $f = \sum a_k h^k$. The coefficient of $h^k$ in $(1 + 2 c h + h^2) f' - (c + h) f$ is zero. So with $a_0 "
+        "= 1$ and $a_{-1} = 0$, each coefficient follows from the two coefficients before it.",
         coefficient({"f": {1: 1 + 2 * c * h + h**2, 0: -(c + h)}}, h, K).subs(
             {indexed("f", K, shift): indexed("a", K, shift) for shift in (1, 0, -1)}
         ),
@@ -225,7 +225,8 @@ def weak(d: Derivation) -> None:
         legendre[n + 1] = legendre.get(n + 1, (-(2 * n + 1) * c * legendre[n] - n * legendre.get(n - 1, 0)) / (n + 1))
         series[n + 1] = ((1 - 2 * n) * c * series[n] + (2 - n) * series[n - 1]) / (n + 1)
     d.step(
-        "They also agree with the first coefficients from the recurrence, $a_2$ and $a_3$.",
+        "The formula with Legendre's polynomials also gives the coefficients $a_2$ and $a_3$ that follow from the "
+        "recurrence.",
         Matrix([(legendre[n - 2] - legendre[n]) / (2 * n - 1) for n in (2, 3)]),
         Matrix([series[2], series[3]]).expand(),
         because="the first four Legendre polynomials of $-c$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",

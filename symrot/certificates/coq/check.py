@@ -176,7 +176,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
         ready = [name for name, text in left.items() if _required(text) & sources.keys() <= done]
         if not ready:
             raise CertificateError(
-                f"expected Coq files that do not require each other in a circle, got {', '.join(left)}"
+                f"expected Coq files without a cycle of Require commands, got a cycle of {', '.join(left)}"
             )
         levels.append(ready)
         done |= set(ready)

@@ -157,8 +157,8 @@ class _EqualityProver:
             return {index}
         if node[0] not in ("add", "mul"):
             raise CertificateError(
-                f"{self.operations.name}: expected a polynomial in the branch of a conditional that "
-                "holds a series, got another formula"
+                f"{self.operations.name}: expected a polynomial in the branch of a conditional that replaces a "
+                "function by its series, got another formula"
             )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
@@ -208,8 +208,8 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a conditional that the formula contains too, got a conditional "
-            f"with the relation {relation!r}"
+            f"{self.operations.name}: expected only conditionals that the formula contains too, got a conditional with "
+            f"the relation {relation!r}"
         )
 
     def _is_limit_or_formula(
@@ -237,8 +237,8 @@ class _EqualityProver:
                 self.truncations.append(self._truncated(name, limit, self._coefficients(near, square)))
                 return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected a series that belongs to a function of the formula, got "
-            "another polynomial"
+            f"{self.operations.name}: expected the series of a function that the formula contains, got another "
+            "polynomial"
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:

@@ -188,7 +188,7 @@ class LawProver(FormulaReader):
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
                 raise CertificateError(
-                    f"{self.name}: expected a root divided by a sum of squares, got a root divided by {below}"
+                    f"{self.name}: expected a square root whose divisor is a sum of squares, got the divisor {below}"
                 )
             value = self.roots[square] = self.fractions.lowest(self.radical(above * below), below)
             if square != (above * below, below) or value[0] in self.radicals:

@@ -108,7 +108,7 @@ def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     if hypotheses(symbols) != law.relations:
         expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
-        raise CertificateError(f"{name}: expected {expected}, for {law.text!r}, got others")
+        raise CertificateError(f"{name}: expected {expected}, for {law.text!r}, got other hypotheses")
     return tuple(map(str, symbols))
 
 

@@ -201,7 +201,7 @@ def _computed(state: MachineState, name: str, first: Words, second: Words) -> tu
     if node[0] == "address" and y is not None and name in ("add", "sub", "and"):
         signed = y - (1 << bits) if y >> bits - 1 else y
         if name == "and" and (node[2] != STACK or signed not in (-16, -32, -64)):
-            raise NotUnderstood("expected integers under a bit mask, got an address")
+            raise NotUnderstood("expected integers as operands of a bit mask, got an address")
         offset = {"add": node[3] + signed, "sub": node[3] - signed, "and": node[3] & signed}[name]
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):

@@ -104,7 +104,7 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
-            raise NotUnderstood(f"expected the number of a comparison, 0 to 31, got {constant}")
+            raise NotUnderstood(f"expected a comparison predicate from 0 to 31 in the instruction, got {constant}")
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -169,7 +169,7 @@ def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
         for lane in _lanes(state, sources[-1], width):
             value = terms.constant(lane)
             if value is None:
-                raise NotUnderstood("expected a shift of a constant, got a variable")
+                raise NotUnderstood("expected a constant as the number that is shifted, got a variable")
             results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )

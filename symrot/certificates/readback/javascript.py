@@ -67,7 +67,7 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
     body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
     parts = _HEAD.split(body)
     if parts[0].strip() or len(parts) < 4:
-        raise CertificateError(f"{where}: expected a JavaScript module that contains functions alone")
+        raise CertificateError(f"{where}: expected a JavaScript module that contains only functions")
     functions = []
     for function, arguments, content in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
         names = arguments.split(", ") if arguments else []

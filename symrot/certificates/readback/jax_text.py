@@ -86,7 +86,7 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
             continue
         definition = _DEFINITION.match(block)
         if definition is None:
-            raise CertificateError(f"{where}: expected definitions of functions alone, got {block[:30]!r}")
+            raise CertificateError(f"{where}: expected only definitions of functions, got {block[:30]!r}")
         mark, function, arguments = definition.groups()
         lines, inputs = block[definition.end() :].splitlines(), arguments.split(", ") if arguments else []
         if function == name:
@@ -95,10 +95,14 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
         if mark:
             needed.add(function.removeprefix("_"))
         if not re.fullmatch("_[a-z][a-z_]*", function) or set(inputs) & (_ONLY_IN_C | _NOT_IN_C):
-            raise CertificateError(f"{where}: expected functions such as _sinc, got {function}({arguments})")
+            raise CertificateError(
+                f"{where}: expected auxiliary functions with a name such as _sinc, got {function}({arguments})"
+            )
         functions.append(_function(function, lines, inputs, where))
     if rules != needed:
-        raise CertificateError(f"{where}: expected the rule of the derivative of each function with jax.custom_jvp")
+        raise CertificateError(
+            f"{where}: expected a rule for the derivative of each function that is marked with jax.custom_jvp"
+        )
     return "\n".join(functions)
 
 

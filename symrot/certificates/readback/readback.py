@@ -417,7 +417,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
         mark = "+"
     range_test.expect(";")
     if range_test.peek() or not reader.vectorised_angles <= tested:
-        raise range_test.fail(f"the end of the loop after a test by {far} of each angle")
+        raise range_test.fail(f"the end of the loop after the test of each angle by {far}")
     reader.vectorised_angles = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)

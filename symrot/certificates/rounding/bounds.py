@@ -395,7 +395,9 @@ def check_bounds(
         for place, (low, high) in section["box"].items()
     }
     if not 0 <= section["budget"] <= BUDGET:
-        raise CertificateError(f"expected a budget of at most {BUDGET} evaluations of boxes, got {section['budget']}")
+        raise CertificateError(
+            f"expected a search for bounds with at most {BUDGET} evaluations of boxes, got {section['budget']}"
+        )
     for operations, part in zip((operations_double, operations_float), section["precisions"], strict=False):
         if operations is None:
             continue
@@ -440,7 +442,8 @@ def _check_precision(
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected the same choices for {item['output']} as in the operations of the C text, got others"
+                f"{name}: expected the choices (where the C text branches) for {item['output']} to be those of its "
+                "operations, got others"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
@@ -449,8 +452,8 @@ def _check_precision(
         least = error_at_point(task, at)
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
-                f"{name}: expected a bound of {item['output']} of at least {least / unit:.6g} units, "
-                f"which a point of the box reaches, got {item['units']}"
+                f"{name}: expected a bound of {item['output']} of at least {least / unit:.6g} units, because the error "
+                f"at a point of the box is that large, got {item['units']}"
             )
 
 

@@ -151,7 +151,9 @@ def largest_box(
     chosen = list(box) if places is None else list(places)
     for place in chosen:
         if place not in box:
-            raise InputError(f"{operations.name}: expected one of {', '.join(box)}, got {place!r}")
+            raise InputError(
+                f"{operations.name}: expected an input that can vary, one of {', '.join(box)}, got {place!r}"
+            )
 
     def holds(size: float) -> bool:
         tasks_by_output = bound_tasks(operations, resized(box, size, chosen), region, budget, libm_ulp)
@@ -173,5 +175,7 @@ def largest_box(
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
-        raise InputError(f"{operations.name}: expected a target error that a box of some size meets, got {target:g}")
+        raise InputError(
+            f"{operations.name}: expected a target error that is met on a box of some size, got {target:g}"
+        )
     return low, resized(box, low, chosen)

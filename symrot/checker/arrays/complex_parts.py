@@ -1,4 +1,7 @@
-"""Splitting formulas such as ``exp(i*x)`` into real and imaginary parts, as trees: equal formulas have equal parts."""
+"""Splitting formulas such as ``exp(i*x)`` into their real and imaginary parts, as trees.
+
+Two complex formulas are equal exactly if both their parts are; the engine then decides two equations of real formulas.
+"""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -190,10 +193,10 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return an equation of two columns (real part, imaginary part), one column for each side of a complex equation.
+    """Return a complex equation with each side as a column (real part, imaginary part).
 
-    A side that is a single name stays as it is: such an equation only names the other side, or says that the
-    imaginary part of the other side is zero.
+    If a side is a single name, as in ``z = exp(i*x)``, it stays as it is: it only gives the other side a name. The
+    other side becomes a column, or its real part alone if it has no imaginary part.
 
     Raises
     ------

@@ -114,7 +114,7 @@ def _is_condition(left: Node, right: Node) -> bool:
 
 
 def _is_component(side: Node, other: Node) -> bool:
-    """Return whether an equation gives a formula, without the quantity v, for the components v_i."""
+    """Return whether ``side`` is a component such as v_i and ``other`` a formula without v, which so defines v."""
     if not _indices(side) or _symbol(side):
         return False
     return str(side.value).rpartition("_")[0] not in {*_quantities(other)}

@@ -65,7 +65,7 @@ class Claim:
         Definitions in order, each of which may use those before it.
     hypotheses : tuple of Relation
     relation : Relation or None
-        The equation; None for a worked number, which has ``value`` and ``printed`` instead.
+        The equation; None for a formula that is compared with a printed number, ``value`` and ``printed``.
     value : Node or None
     printed : str
         The decimal number that a document prints for ``value``.

@@ -59,7 +59,7 @@ class Interpreter(Scope):
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:
             if is_unordered(reason):
-                raise self.fail(node, "numbers of which it can be told which is larger") from None
+                raise self.fail(node, "numbers that symrot can compare by size") from None
             raise
 
 

@@ -122,8 +122,8 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
     """Return the vectors of a claim for which component names must be made.
 
-    A vector that is a whole side of the claim, and occurs nowhere else, needs none. The components of R are
-    numbered, since R_x is a rotation.
+    A vector that is a whole side of the claim, and occurs nowhere else, needs none. Usually a has the components a_x,
+    a_y and a_z, but R has R_1, R_2 and R_3, since R_x means a rotation about x.
 
     ``names`` are the names of vectors and tensors; the value is True for one with a hat.
     """

@@ -74,7 +74,10 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return whether a sequence is stated, or is a usual one for the body: its second angle tilts the axis of a top."""
+    """Return False for a sequence that books do not use for a top, if the body is a top and no sequence is stated.
+
+    Books use ZXZ and ZYZ, whose second angle tilts the axis of the top.
+    """
     is_top = context.body is not None and context.body.kind.title in TOPS
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
@@ -174,7 +177,10 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a body's formula is for a certain place, while the context states just a pivot, at any place."""
+    """Return whether a formula for a body names a place, such as an end, that the context leaves open.
+
+    The context leaves it open with words such as "about the pivot": a pivot may be anywhere.
+    """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 
@@ -186,7 +192,7 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
     """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
 
     ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed
-    symbols; any other letter of the claim is the symbol of the same name.
+    symbols; any other letter of the claim stands for the symbol of the same name.
     """
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]

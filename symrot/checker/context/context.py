@@ -161,7 +161,9 @@ class Context:
         """Raise InputError if the context describes a name that a text does not have."""
         for meaning in self.meanings:
             if not any(meaning.is_of(name) for name in names):
-                raise InputError(f"where: expected words about names that the claim has, got {meaning.written[0]!r}")
+                raise InputError(
+                    f"where: expected meanings only of names that occur in the claim, got {meaning.written[0]!r}"
+                )
 
     def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
         """Return the units of ``names`` that follow from their meanings.
@@ -373,7 +375,7 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
             return quantity, phrase
     for word, instead in AMBIGUOUS.items():
         if word in plain.split():
-            raise InputError(f"{prefix}expected {instead}, got {words[:60]!r}, which may be either")
+            raise InputError(f"{prefix}expected {instead}, got {words[:60]!r}, which is ambiguous")
     everything = {phrase: phrase for quantity in QUANTITIES for phrase in quantity.phrases}
     raise InputError(f"{prefix}expected words for a quantity, got {words[:60]!r}{_hint(plain, everything)}")
 
@@ -467,8 +469,9 @@ def _check_consistency(context: Context, prefix: str) -> None:
                 )
         if meaning.quantity.sign not in ("", context.sign_of_products):
             raise InputError(
-                f"{prefix}where: expected products of inertia with one sign, got {meaning.written[0]} as the "
-                f"{meaning.quantity.title} besides others with the {context.sign_of_products} sign"
+                f"{prefix}where: expected all products of inertia with the same sign convention, got "
+                f"{meaning.written[0]} as the {meaning.quantity.title} besides others with the "
+                f"{context.sign_of_products} sign"
             )
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:

@@ -101,8 +101,8 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says what is changed
-    of the formula, such as "transposed".
+    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says in which form
+    the formula is meant, such as "transposed"; it is empty for the formula as it is.
     """
 
     known: Known
@@ -189,7 +189,10 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if "a tangent" of a disk or ring is taken to be normal to its plane."""
+    """Replace "true" by "recognised" if the words "about a tangent" were read as an unusual axis.
+
+    This is the axis through the rim of a disk or ring that is normal to its plane; a tangent may also lie in the plane.
+    """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
@@ -199,10 +202,9 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if a letter with an index, such as I_1, was assigned to another axis.
+    """Replace "true" by "recognised" if I_1, for example, was taken for a moment about another axis than the first.
 
-    Words about a letter, or about the moments of the body, may say for which axis it stands; then nothing is
-    replaced.
+    The verdict stays "true" if words about the letter, or about the moments of the body, say for which axis it stands.
     """
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
@@ -377,7 +379,7 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula without a term or factor of the formula that the context states."""
+    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states."""
     context = claim.context
     own_meaning = context.meaning_of(quantity)
     if context.body is None and (own_meaning is None or own_meaning.body is None):
@@ -534,9 +536,9 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the symbols of angle rates that an assignment does not use, each with the derivative that it means.
+    """Return the angle rates that an assignment of letters does not use: ``dphi`` with ``diff(phi(t), t)`` for it.
 
-    The result is empty if the claim writes no derivatives.
+    The result is empty if the claim itself has no derivatives.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}

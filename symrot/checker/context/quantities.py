@@ -74,7 +74,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("kinetic energy", ("kinetic energy of rotation", "rotational energy", "energy of rotation"),
              ("kinetic energy",), "E_k", ENERGY),
     Quantity("potential energy", ("potential",), ("potential",), "E_k", ENERGY),
-    Quantity("energy", ("total energy", "mechanical energy"), ("energy of", "energy at"), "E_k|E", ENERGY),
+    Quantity("energy", ("total energy", "mechanical energy"), ("energy of",), "E_k|E", ENERGY),
     Quantity("effective potential", (), ("effective potential",), "", ENERGY),
     Quantity("Lagrangian", (), ("Lagrangian",), "", ENERGY),
     Quantity("work", (), ("work",), "W_k", ENERGY),

@@ -116,7 +116,7 @@ def decide_equation(equation: Equation) -> Decision:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
     except (TypeError, AttributeError) as reason:
         if is_unordered(reason):
-            return Decision("undecided", reason="two numbers in it are too close to tell which is larger")
+            return Decision("undecided", reason="two numbers in the claim are too close to tell which is larger")
         raise
 
 
@@ -255,7 +255,8 @@ class _ClaimCase(Case):
     def lacks_evidence(self) -> bool:
         """Whether the stages so far leave the claim open.
 
-        They do if no counterexample is known, and there are hypotheses or no condition on signs suffices.
+        They do if no counterexample is known, and either the claim has hypotheses, or no condition on the signs of its
+        roots is known that makes it true.
         """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -467,7 +468,7 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
         left, right = map(shape_text, mismatch.shapes)
         loose = isinstance(equation.left, Symbol) or isinstance(equation.right, Symbol)
         hint = " (a name that nothing defines is a scalar; `symrot identify` says what a matrix is)" if loose else ""
-        raise InputError(f"expected two sides of one shape, got {left} == {right}{hint}") from None
+        raise InputError(f"expected two sides of the same shape, got {left} == {right}{hint}") from None
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
@@ -527,7 +528,7 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return, by text, the formulas that must be nonzero, without those that never vanish or are powers of others.
+    """Return formulas that must be nonzero, by their texts, without those that never vanish or are powers of others.
 
     ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
     """
@@ -587,7 +588,7 @@ def _obstacle(ring: FormulaRing) -> str:
     if ring.outside_scope:
         named = ring.outside_scope[:3]
         terms = ", ".join(f"functions of {as_text(term)}" if term.is_Rational else as_text(term) for term in named)
-        return f"too little is known here about {terms}, and no point was found where the sides provably differ"
+        return f"symrot knows too little about {terms}, and no point was found where the sides provably differ"
     if ring.roots:
         roots = ", ".join(as_text(root.expression) for root in list(ring.roots)[:3])
         return (
@@ -595,5 +596,5 @@ def _obstacle(ring: FormulaRing) -> str:
             "and no point was found where they provably differ"
         )
     if ring.hypotheses:
-        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference; nor was a proof found"
+        return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference, and no proof was found"
     return "no rational point was found at which the sides differ, since an angle depends on other symbols"

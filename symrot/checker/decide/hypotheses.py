@@ -172,7 +172,10 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values that symbols, and angles which are symbols, have at a point."""
+        """Return the values of symbols at a point.
+
+        An angle theta is one of them: the point has values for its sine and cosine, of which atan2 gives theta.
+        """
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
             if place in point.values and is_leaf(atom):

@@ -3,8 +3,8 @@
 A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
 basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
 form, by the ranges of its unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding
-``z f = 1`` makes all cases impossible (Rabinowitsch). This also proves that f vanishes where it does so for real
-numbers or positive symbols only, or where only a power of f is a combination of the constraints.
+``z f = 1`` makes all cases impossible (Rabinowitsch). This covers more than linear combinations of the constraints: a
+power of f may be one, or f may vanish for real numbers only, as x does if x^2 + y^2 = 0, or for positive symbols only.
 """
 
 from collections.abc import Sequence
@@ -230,7 +230,10 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the smallest and largest values of unknowns, by their signs and by ``sum of d*x^2 = constant``."""
+        """Return bounds (low, high) of unknowns by their numbers in the ring.
+
+        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1.
+        """
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)

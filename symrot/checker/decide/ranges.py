@@ -388,9 +388,9 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges exclude the zero of a formula.
+        """Return whether ranges imply that a linear formula is not zero, so that ``formula != 0`` need not be printed.
 
-        If the zero is an end of a range that contains it, the end is removed from the range.
+        Where the zero is an end of a range, the end is removed first: with x != 0, ``x >= 0`` becomes ``x > 0``.
         """
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):

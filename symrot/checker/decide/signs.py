@@ -145,7 +145,7 @@ def _by_absolute_values(formula: Expr) -> bool:
     """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
 
     If u is the formula in the only negative term -c|u|, and v >= 0 the sum of the other terms, the sign of v^2 -
-    c^2 u^2 decides. In its expanded form, |e| - e is never negative.
+    c^2 u^2 decides. To prove a sign, each positive term c|e| is replaced by c*e or -c*e, which are at most as large.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]

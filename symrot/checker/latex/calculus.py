@@ -135,7 +135,7 @@ class CalculusPart(NamesPart):
             raise self.fail("one name between d and /dt, or \\frac{d}{dt}(..)")
         self.index += 2
         if self.order() != order:
-            raise self.fail(f"a derivative of order {order} both above and below the slash", item)
+            raise self.fail(f"the same order of the derivative above and below the slash, {order},", item)
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
@@ -145,7 +145,7 @@ class CalculusPart(NamesPart):
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
         variables = self.inside(fraction.below, self.variables)
         if len(variables) != order:
-            raise self.fail(f"a derivative of order {order} both above and below the line", fraction)
+            raise self.fail(f"the same order of the derivative above and below the line, {order},", fraction)
         if operand is None:
             operand = self.factor()
             if self.starts_factor() or self.at("/"):

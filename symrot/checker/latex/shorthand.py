@@ -106,7 +106,10 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, besides c_2 and s_3."""
+    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``.
+
+    Beside c_2 and s_3, whose numbers are in ``digits``, such a rate shows that these are a cosine and a sine.
+    """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
         inner = pieces[place + 1 + grouped]

@@ -381,7 +381,7 @@ class SumsPart(Cursor):
     def environment(self, table: tree.Table) -> Node:
         name = table.name
         if name.rstrip("*") in SEVERAL_LINES:
-            raise self.fail(f"one equation instead of the lines of {name}", table)
+            raise self.fail(f"one equation instead of the environment {name} with several lines", table)
         if name not in MATRICES:
             raise self.fail(f"one of the environments {', '.join(MATRICES)}", table)
         between = "& or \\\\ between the entries of a matrix"

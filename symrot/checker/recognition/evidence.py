@@ -162,7 +162,10 @@ def misfit_of(name: str, known: str) -> float:
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether a known formula's name has one of several words; an angular velocity is not a velocity here."""
+    """Return whether a known formula's name has one of several words; "velocity" in "angular velocity" does not count.
+
+    If ``words`` is None, any name will do.
+    """
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
@@ -224,7 +227,10 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether the fault is the angle or function in a quaternion's component, as in beta_1 = e_1 sin(phi)."""
+    """Return whether a component of a quaternion has a wrong angle or function, as in beta_1 = e_1 sin(phi).
+
+    The right formula is e_1 sin(phi/2).
+    """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (

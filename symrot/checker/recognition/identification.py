@@ -194,8 +194,8 @@ def identified(
     """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
     Steps of derivations are included only if ``steps``. Products of few symbols are included only if the claim has
-    a name for the value (``named``). If ``quantity`` is the name of the value, axes and angles in the names of
-    symbols keep their places. If ``is_relation``, the value is the difference of an equation's sides, and known
+    a name for the value (``named``). If ``quantity`` is the name of the value, I_1 and omega_1 cannot stand for
+    quantities of different axes. If ``is_relation``, the value is the difference of an equation's sides, and known
     relations are searched.
     """
     entries, shape = flatten(value)

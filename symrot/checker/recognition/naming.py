@@ -409,7 +409,7 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that are equal to an equation: the claim's side with the quantity, and ``tree``."""
+    """Return the known relations that say the same as ``side == tree``, with the side that has the claim's quantity."""
     difference = sum_of([named.side, negated(tree)])
     try:
         value = claim.with_definitions(claim.interpreter().read(difference))

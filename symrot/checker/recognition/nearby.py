@@ -136,7 +136,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum, which the look-up by fingerprint may miss by its sign."""
+    """Return whether a formula has the root of a sum: its fingerprint may differ from an equal formula's by a sign."""
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 

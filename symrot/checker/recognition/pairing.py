@@ -132,7 +132,10 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that extend a partial one; also yield None at each step, to count the steps."""
+    """Yield the complete renamings that extend a partial one; also yield None at each step of the search.
+
+    By the Nones the caller counts the steps, to give up after too many.
+    """
     yield None
     if not order:
         used = sum(other is not None for other in renaming.values())

@@ -96,7 +96,7 @@ class Letters:
 
 @dataclass
 class PointOfLetters(Point):
-    """A test point at which rates, such as ``diff(phi(t), t)``, have values of their own."""
+    """A test point at which rates such as ``diff(phi(t), t)`` have values independent of those of ``phi(t)``."""
 
     rates: Mapping[Node, float] = field(default_factory=dict)
 
@@ -109,7 +109,7 @@ class PointOfLetters(Point):
 
 
 def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
-    """Return a matrix in which the derivatives of its entries, which are functions of time, replace the entries."""
+    """Return the derivative of a matrix whose entries are functions of time, written out entry by entry."""
     if tree.kind == "call" and tree.args == (TIME,):
         return Node("call", "diff", (tree, *variables))
     return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))

@@ -99,7 +99,10 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Solve ``sum of terms == 0`` for a letter; None if no term-by-term solution exists."""
+    """Solve ``sum of terms == 0`` for a letter.
+
+    Return None unless the letter is a factor of the terms that contain it, in all of them in the same power, 1 or 2.
+    """
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]

@@ -256,9 +256,10 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether transposing a call is no useful edit.
+    """Return whether a node is a call whose transpose is no useful edit.
 
-    It changes nothing or only the shape, or another edit does the same.
+    The transpose of ``diag(..)`` is the same matrix, that of ``cross(..)`` only another shape, and that of a rotation
+    matrix has the angle with the other sign, which another edit gives.
     """
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 

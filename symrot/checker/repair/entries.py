@@ -77,7 +77,7 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
 
 
 def replacement(made: Node) -> Callable[[Node], Node]:
-    """Return a constant function: it returns ``made`` for any node, as the edit that :func:`replaced` applies."""
+    """Return a function that returns ``made`` for any node; :func:`replaced` then puts ``made`` in place of a part."""
     return lambda _: made
 
 

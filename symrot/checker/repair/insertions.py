@@ -76,12 +76,15 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
     if len(residual) > MOST_TERMS_READ or len(ring.roots) > MOST_ROOTS_READ:
-        raise TooLarge("the difference of the sides is too long to be one term")
+        raise TooLarge("the difference of the sides is too long to be added to one side as a term")
     return Integer(0) if vanishes(ring, residual) else ring.expression(ring.ratio(formula))
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield the repair of a side that adds its missing term to each wrong entry, if each entry lacks only one term."""
+    """Yield one repair of a side: to each wrong entry it adds the term that this entry lacks.
+
+    Nothing is yielded if an entry lacks more than one short term.
+    """
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
         piece = at(made, path)

@@ -1,8 +1,9 @@
 """Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
 
-At a point, an edit of one term changes the difference of the sides by an amount that edits of other terms leave alone.
-So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of edited
-factors multiply in the same way. Each single edit is evaluated once; a look-up gives the edits that complete it.
+At a point, an edit of one term changes the difference of the sides by an amount that does not depend on edits of other
+terms. So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of
+edited factors multiply in the same way. Each single edit is evaluated once; a look-up of the amount that is left gives
+the edits that complete it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -92,7 +93,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of two edits that together have the whole effect.
+    """Yield the indices of each two edits that together have the whole effect: they make both sides equal.
 
     ``rest`` returns the effect that remains for the second edit: the difference or the quotient.
     """

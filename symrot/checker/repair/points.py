@@ -142,7 +142,7 @@ class Point:
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise UndefinedValue("expected to differentiate by a name that has a value, got another one")
+                raise UndefinedValue("expected to differentiate by a name that has a value, got a name without a value")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {

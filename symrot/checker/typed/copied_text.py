@@ -74,7 +74,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return the clauses after ``where`` with blanks in place of those without an equation, and a list of these."""
+    """Return the clauses after ``where`` with blanks for those that have no equation, and a list of the latter."""
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

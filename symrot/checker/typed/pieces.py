@@ -46,7 +46,7 @@ class PiecesPart(OpenFunctionsPart):
         while True:
             token = self.token()
             if self.index - first > 5 * DEEPEST_NESTING:
-                raise self.fail("fewer methods and indices in a row, as in M.T[0, 1],")
+                raise self.fail("fewer methods and indices after one name (M.T[0, 1] has two),")
             if token.text == "." and token.kind == "mark":
                 if self.is_vector(node) and token.spaced and self.token(1).spaced:
                     return node  # the dot of a scalar product

@@ -65,7 +65,7 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False for a body that also rotates across the driven axis, got True; use "
+                "quaternion: expected False for a body that does not rotate about the driven axis alone, got True; use "
                 "symrot.closed_form.spin_up.motion, or numerical integration if the body is damped"
             )
         times = times_of(t)
@@ -211,7 +211,7 @@ class Driven:
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
-                "expected a body that is symmetric about the driven axis if it rotates across it, got moments "
+                "expected a body that rotates only about the driven axis or is symmetric about this axis, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
         return self._moving(rates, [float(x) for x in number.unit(components)])

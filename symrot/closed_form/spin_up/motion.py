@@ -154,7 +154,8 @@ class SpunBody:
             raise InputError(f"expected a quaternion that is not zero, got {[float(x) for x in attitude]}")
         if not self._symmetric or not (rates[axis - 2] or rates[axis - 1]):
             raise InputError(
-                "expected a body that is symmetric about the driven axis and rotates across it too, got moments "
-                f"{[float(x) for x in self._inertia]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
+                "expected a body that is symmetric about the driven axis and also rotates about an axis perpendicular "
+                f"to it, got moments {[float(x) for x in self._inertia]} kg m^2 and omega {[float(x) for x in rates]} "
+                "rad/s"
             )
         return SpinUp(self, rates, attitude)

@@ -112,7 +112,9 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
         return poly
     weight = 1 + poly.ring.ngens // 8
     if weight * sum(len(terms) * len(rule.replacement) ** times for times, terms in high.items()) > MOST_TERMS:
-        raise TooLarge(f"reducing the formula gives more than {MOST_TERMS} terms at once; split the formula")
+        raise TooLarge(
+            f"reducing the formula gives an intermediate result of more than {MOST_TERMS} terms; split the formula"
+        )
     total = poly.new(low)
     for times in sorted(high):
         total = total + poly.new(high[times]) * rule.replacement**times

@@ -13,7 +13,7 @@ from symrot.proof.pages.parts import passage_equations
 __all__ = ["excerpt"]
 
 LONGEST_IN_TEXT = 100  # letters of LaTeX
-LINES = 36  # of a page in detail: a screen
+LINES = 33  # of a page in detail: a screen
 LINE = 62  # letters on a line of a formula
 LETTERS = 5000  # of LaTeX on a screen
 LEFT_OUT = (
@@ -80,7 +80,7 @@ def _on_one_screen(passages: list[Passage]) -> list[Passage]:
         if letters > LETTERS:
             break
         lines += 2 + sum(len(rows(text, LINE)) + 2 for text in texts)
-        if lines > LINES:
+        if lines > LINES - (2 if passage is not passages[-1] else 0):  # 2 for the sentence on what is left out
             break
         screen.append(passage)
     if len(screen) < len(passages):

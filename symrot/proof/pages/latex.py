@@ -10,6 +10,7 @@ from symrot.proof.pages.parts import equation, footer, passage_equations, remark
 __all__ = ["latex_book", "latex_document"]
 
 WIDTH = 62  # letters per line of a displayed formula
+LONGEST_INLINE = 120  # letters of LaTeX; a longer formula in a sentence is displayed on a line of its own
 
 PACKAGES = r"""\usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
@@ -162,13 +163,14 @@ ESCAPES = {
 def _prose(text: str) -> str:
     """Return Markdown prose as LaTeX: formulas in ``$`` stay as they are; code, links and emphasis are translated."""
     text = re.sub(r"`[^`]+`|\*\*(.+?)\*\*", lambda m: m[0] if m[1] is None else f"\1{m[1]}\2", text)
-    pieces = re.split(r"(\$[^$]+\$|`[^`]+`|\[[^\]]+\]\([^)]+\.md\))", text)
+    pieces = re.split(r"(\$[^$]+\$[.,;]?|`[^`]+`|\[[^\]]+\]\([^)]+\.md\))", text)
     return "".join(_piece(piece) for piece in pieces).replace("\1", r"\textbf{").replace("\2", "}")
 
 
 def _piece(piece: str) -> str:
     if piece.startswith("$"):
-        return piece
+        body, stop = piece[1:].split("$")
+        return rf"\fitted{{{body}{stop}}}" if len(body) > LONGEST_INLINE else piece
     link = re.fullmatch(r"\[([^\]]+)\]\(([^)]+)\.md\)", piece)
     if link:
         return rf"\pagelink{{{link[2]}}}{{{_prose(link[1])}}}"
@@ -176,6 +178,7 @@ def _piece(piece: str) -> str:
     escaped = "".join(ESCAPES.get(letter, letter) for letter in piece.strip("`" if code else ""))
     if code:
         straight = escaped.replace("'", r"\textquotesingle{}").replace("--", "-{}-")  # as a shell needs them
-        return rf"\texttt{{{straight}}}"
+        breakable = re.sub(r"(?<=[,(*])(?=[^*])|(?<=\\_)", r"\\allowbreak{}", straight)
+        return rf"\texttt{{{breakable}}}"
     raised = re.sub(r"\\\^\{\}(\d+)", r"\\textsuperscript{\1}", escaped)
     return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", raised)

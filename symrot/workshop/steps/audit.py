@@ -92,7 +92,10 @@ def audit_step(
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(f"{path}: expected the proof of the C text that symrot computes now, got another one")
-    report = [f"{name}: {len(texts)} hashes, C text of symrot_{name} and symrot_{name}f and batches = {method.formula}"]
+    report = [
+        f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
+        f"functions, computes the {method.formula}"
+    ]
     report.append(_of_scene(path, data, method))
     if "bounds" in data:
         progress("bounding ..")
@@ -121,7 +124,7 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
     values = [(symbol, float.fromhex(value)) for symbol, value in parameters]
     if values and texts[parameters_file(name)] != parameters_header(name, values):
         raise CertificateError(
-            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states"
+            f"{path.parent / parameters_file(name)}: expected the parameters that the certificate states, got others"
         )
     return texts
 
@@ -144,7 +147,10 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
     match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
-        return "the rates are only those that the certificate states, because symrot has no scene of that name"
+        return (
+            "the rates of the motion were not compared with a scene, because symrot has no scene of the name in the "
+            "certificate"
+        )
     order = method.order if method.name == "taylor" and method.order != ORDER else None
     jacobian = method.by if isinstance(method, WithDerivatives) else ()
     own = json.loads(step_text(scene, method.name, order, jacobian).certificate())

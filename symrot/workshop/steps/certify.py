@@ -48,10 +48,12 @@ def certify_step(
         If the C text does not compute the method.
     """
     printed = step_text(scene, step, order)
+    if not isinstance(printed, StepText):
+        raise InputError("step: expected rk4, taylor or dop853, got exact: exact steps have a test and no certificate")
     if ranges and step == "dop853":
         raise InputError(
-            "step: expected rk4 or taylor for bounds on a box, got dop853, whose coefficients are rounded; without a "
-            "box, its formula is certified"
+            "step: expected 'rk4' or 'taylor' for bounds on a box, got 'dop853', whose coefficients are rounded; leave "
+            "out the box to certify only the formula"
         )
     progress("proving ..")
     text = printed.certificate()
@@ -74,8 +76,8 @@ def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
     lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in problem.symbols.items() if place not in box]
     if lacking:
         raise InputError(
-            f"{step.name}: expected {' '.join(lacking)} in addition to the ranges that the scene knows, "
-            f"got {' '.join(ranges)[:60]}"
+            f"{step.name}: expected {' '.join(lacking)} in addition to the ranges that the scene gives, got "
+            f"{' '.join(ranges)[:60]}"
         )
     return bounds_of_step(operations, rates, step.method, {place: box[place] for place in operations.inputs})
 

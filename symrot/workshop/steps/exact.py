@@ -50,12 +50,12 @@ def _form(scene: Scene) -> _Form:
     known = exact_form(scene)
     if known is None or known.library not in _FORMS:
         raise InputError(
-            f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step exact, "
+            f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step 'exact', "
             "got a scene without such a closed form; the steps rk4, taylor and dop853 exist for it"
         )
     if not scene.body.principal.given_axes:
         raise InputError(
-            f"{scene.name}: expected a body given along its principal axes for the step exact, got products of "
+            f"{scene.name}: expected a body given along its principal axes for the step 'exact', got products of "
             "inertia; the steps rk4, taylor and dop853 exist for it"
         )
     return _FORMS[known.library](scene, known.derivation)
@@ -162,7 +162,7 @@ class ExactStepText(KernelText):
         return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
 
     def _other(self, target: str) -> str:
-        raise InputError(f"step: expected the target c for the step exact, got {target}")
+        raise InputError(f"step: expected the target 'c' for the step 'exact', got {target}")
 
     @property
     def numpy(self) -> str:

@@ -6,7 +6,7 @@ from sympy import Matrix, Symbol
 import symrot
 from symrot.checker.context.angle_orders import orders
 from symrot.checker.context.context import NO_CONTEXT, read_context
-from symrot.checker.context.substitution import Substitution, decided
+from symrot.checker.context.relations.substitution import Substitution, decided
 from symrot.checker.decide.decision import Equation
 from symrot.conventions import SEQUENCES
 from symrot.kinematics.euler import rate_jacobian
@@ -95,7 +95,9 @@ def test_a_product_without_the_minus_sign_is_called_that():
 
 
 def test_both_signs_of_products_in_one_context_are_refused():
-    with pytest.raises(symrot.InputError, match="expected products of inertia with one sign, got I_xz"):
+    with pytest.raises(
+        symrot.InputError, match="expected all products of inertia with the same sign convention, got I_xz"
+    ):
         symrot.check("L_x = I_xy omega_y + I_xz omega_z", where=["I_xy = ∫ xy dm", "I_xz = -∫ xz dm"])
 
 

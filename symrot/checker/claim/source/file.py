@@ -116,7 +116,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     for place_of, (defined, formula) in enumerate(entry.get("define", ())):
         _check_name(defined, "define", place)
         if defined in known:
-            raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim has already")
+            raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim already uses")
         known.add(defined)
         own = Declared((known | {*symbols}) - {*functions}, functions)
         define.append((defined, read_expression(formula, f"{place}: define {defined}", own)))

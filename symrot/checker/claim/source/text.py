@@ -170,7 +170,10 @@ def _with_own_name(relation: Relation) -> tuple[Relation, str]:
 
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
-    """Return hypotheses in which a name is written ``f(t)`` everywhere if one of the hypotheses has its rate."""
+    """Return hypotheses that agree on which names are functions of time.
+
+    If one hypothesis has ``f(t)`` or a time derivative of f, each f in the others becomes ``f(t)``.
+    """
     nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
@@ -340,7 +343,9 @@ def check_units(units: dict[str, str], known: set[str], place: str) -> dict[str,
     """Return the units of a claim; raise InputError for an unknown unit, or for a name that the claim does not have."""
     for name, unit in units.items():
         if name not in known:
-            raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
+            raise InputError(
+                f"{place}: units: expected units only for names that occur in the claim, got {str(name)[:40]!r}"
+            )
         if not isinstance(unit, str):
             raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
         read_unit(unit, f"{place}: units: {name}")

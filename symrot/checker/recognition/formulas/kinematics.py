@@ -1,7 +1,8 @@
 """Formulas of kinematics in books: rotated vectors, points of a body, angles from matrices and quaternions.
 
-Each is derived from the rotation matrix, the quaternion or the rates of a chart. Angles are known by their sine, cosine
-or tangent: the name of such a formula ends with the inverse function, as in ``", 2 acos"``.
+Each is derived from the rotation matrix, the quaternion, or the rates of Euler angles and other rotation parameters. An
+angle is stored by its sine, cosine or tangent, and its name ends with the inverse function: "angle of rotation of a
+unit quaternion, 2 acos" has the formula q0.
 """
 
 from collections.abc import Iterator
@@ -129,7 +130,10 @@ def _with_unit_axis(powers: Matrix) -> Matrix:
 
 
 def along_axes() -> Iterator[Named]:
-    """Yield angular velocities and momenta as sums of multiples of unit vectors, the columns of a matrix."""
+    """Yield formulas such as ``omega = omega_1 b_1 + omega_2 b_2 + omega_3 b_3``, with unit vectors b_1, b_2, b_3.
+
+    They are for angular momenta and velocities, along the principal axes or the axes of Euler rotations.
+    """
     vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
     momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
     directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors

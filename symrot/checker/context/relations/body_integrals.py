@@ -14,7 +14,7 @@ from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.admission import plain
 from symrot.checker.context.context import Context
-from symrot.checker.context.substitution import Substitution
+from symrot.checker.context.relations.substitution import Substitution
 from symrot.checker.verdict import Identification
 from symrot.exact.decide import decide
 from symrot.exact.printing import as_text

@@ -14,8 +14,8 @@ from symrot import symbols
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
 from symrot.checker.context.context import Context
-from symrot.checker.context.substitution import Substitution
-from symrot.checker.context.tops import MOMENT_LETTERS
+from symrot.checker.context.relations.substitution import Substitution
+from symrot.checker.context.relations.tops import MOMENT_LETTERS
 from symrot.exact.printing import as_text
 
 __all__ = ["is_stated", "substitutions_of_axis_angles"]

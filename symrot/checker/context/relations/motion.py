@@ -4,16 +4,16 @@ from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.context.angle_rates import substitutions_of_entries, substitutions_of_rates
-from symrot.checker.context.axis_angles import is_stated, substitutions_of_axis_angles
-from symrot.checker.context.body_integrals import (
+from symrot.checker.context.relations.angle_rates import substitutions_of_entries, substitutions_of_rates
+from symrot.checker.context.relations.axis_angles import is_stated, substitutions_of_axis_angles
+from symrot.checker.context.relations.body_integrals import (
     TENSOR_OF_INTEGRALS,
     is_tensor_of_integrals,
     substitutions_of_gyration,
     substitutions_of_integrals,
 )
-from symrot.checker.context.substitution import by_substitution
-from symrot.checker.context.tops import substitutions_of_tops
+from symrot.checker.context.relations.substitution import by_substitution
+from symrot.checker.context.relations.tops import substitutions_of_tops
 from symrot.checker.verdict import Verdict
 
 __all__ = ["by_motion"]

@@ -14,7 +14,7 @@ from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import is_usual_for_body, plain
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
-from symrot.checker.context.substitution import Substitution
+from symrot.checker.context.relations.substitution import Substitution
 from symrot.conventions import SEQUENCES
 from symrot.exact.printing import as_text
 from symrot.kinematics.euler import dcm, rate_jacobian

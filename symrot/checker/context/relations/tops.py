@@ -17,7 +17,7 @@ from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.context.admission import plain
 from symrot.checker.context.bodies import TOPS
 from symrot.checker.context.context import Context
-from symrot.checker.context.substitution import Substitution
+from symrot.checker.context.relations.substitution import Substitution
 from symrot.exact.printing import as_text
 from symrot.kinematics.euler import rate_jacobian
 
@@ -56,8 +56,8 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
     """Yield the ways to read a claim as one about a symmetric top.
 
-    There is none if the claim has a letter that means nothing for a top, no moment of inertia, or only independent
-    quantities, nor if the context names another body.
+    There is none if a letter of the claim means nothing for a top, if the claim has no moment of inertia, or none of
+    the derived quantities (momenta, spin and energies), or if the context names another body.
     """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
