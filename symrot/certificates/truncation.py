@@ -28,7 +28,7 @@ from typing import Any
 
 from mpmath import iv
 
-from symrot.codegen.steps import SIZE, Method, RungeKutta, TaylorSeries, stepped
+from symrot.codegen.steps import SIZE, Method, RungeKutta, TaylorSeries, WithDerivatives, stepped
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import CertificateError, InputError
@@ -264,6 +264,7 @@ def require_order(method: Method) -> None:
 
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
+    method = method.plain if isinstance(method, WithDerivatives) else method
     if isinstance(method, TaylorSeries):
         return
     for node, stage in zip(method.nodes, method.stages, strict=True):

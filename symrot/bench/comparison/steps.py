@@ -28,7 +28,8 @@ from symrot.codegen.printing.c_source import c_function, c_name
 from symrot.codegen.steps import step_signature, stepped
 from symrot.formula.program import Program
 from symrot.formula.tree import Node
-from symrot.workshop.step_text import StepText, step_text
+from symrot.scene.scene import load_scene
+from symrot.workshop.step_text import StepText, step_method
 
 __all__ = ["main"]
 
@@ -171,7 +172,7 @@ def main(arguments: list[str] | None = None) -> None:
     absent, over = set[str](), []
     for scene in options.scenes:
         for method, order in STEPS:
-            step = step_text(scene, method, order)
+            step = StepText(load_scene(scene), step_method(method, order))
             texts = {"symrot": (_own_text(step), counted(step.c()[0], step.name))}
             for tool, make in PEERS.items():
                 try:

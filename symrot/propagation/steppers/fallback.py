@@ -433,7 +433,7 @@ class _Integration:
     def _move_clock(self, clock: Clock, now: float) -> float:
         """Move the epoch, from which time is counted, to the present time, which is ``now`` s after the old epoch.
 
-        Return the present time since the new epoch: the rounding error of the new epoch.
+        Return the present time counted from the new epoch. It is not exactly zero, as the epoch is rounded to a double.
         """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
