@@ -29,11 +29,12 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
 
 class _Form(NamedTuple):
-    """What a closed form adds to the text of a step.
+    """The parts of the C text of a step that depend on which closed form the motion has.
 
-    ``parameters`` holds (name, unit and meaning, value) of each number in p; ``tables`` are C definitions of constants;
-    ``arguments`` are the arguments of the C function that prepares a motion; ``named`` the body axes e1, e2, e3;
-    ``motion`` returns the motion from omega and quaternion, for parameters that are doubles.
+    ``parameters`` holds (name, unit and meaning, value) of each number in p, and ``tables`` the C definitions of
+    constants. ``arguments`` are the arguments of the C function that prepares a motion. ``named`` holds the indices of
+    the body axes that the closed form calls e1, e2, e3. ``motion`` is a function that returns the motion for an initial
+    omega and quaternion and for parameters that are doubles.
     """
 
     library: str
