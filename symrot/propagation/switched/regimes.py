@@ -62,8 +62,9 @@ class RegimeParameters(NamedTuple):
 class Regime:
     """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it.
 
-    The regime ends when a guard becomes zero; held guards are zero throughout. Time is counted from the instant at
-    which the motion enters the regime, and this instant is a parameter of rates and guards.
+    The regime ends when a guard becomes zero. If the motion slides, the arguments of the held functions are zero
+    throughout; they do not end the regime. Time is counted from the instant at which the motion enters the regime, and
+    this instant is a parameter of rates and guards.
     """
 
     def __init__(
