@@ -181,7 +181,7 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside a segment, beside its end ``edge``: there a torque that jumps has its value inside.
+    """Return a time just inside a segment, so near its end ``edge`` that it may replace ``edge``, where a torque jumps.
 
     ``other`` is the other end. The distance is too small to affect the choice of the first step.
     """

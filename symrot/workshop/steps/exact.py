@@ -52,12 +52,12 @@ def _form(scene: Scene) -> _Form:
     if known is None or known.library not in _FORMS:
         raise InputError(
             f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step 'exact', "
-            "got a scene without such a closed form; the steps rk4, taylor and dop853 exist for it"
+            "got a scene without such a closed form; use the step 'rk4', 'taylor' or 'dop853'"
         )
     if not scene.body.principal.given_axes:
         raise InputError(
             f"{scene.name}: expected a body given along its principal axes for the step 'exact', got products of "
-            "inertia; the steps rk4, taylor and dop853 exist for it"
+            "inertia; use the step 'rk4', 'taylor' or 'dop853'"
         )
     return _FORMS[known.library](scene, known.derivation)
 
