@@ -423,7 +423,10 @@ def _sum_of(terms: Terms) -> Node:
 
 
 def _range_of(terms: Terms, values: Mapping[str, Any]) -> Any:
-    """Return an interval that contains a polynomial on a box; even powers are not negative."""
+    """Return an interval that contains all values of a polynomial on a box.
+
+    The interval of an even power contains no negative numbers.
+    """
     total = iv.mpf(0)
     for value, powers in terms:
         term = _number(value)

@@ -48,7 +48,7 @@ class Formulas:
 
     @classmethod
     def of(cls, program: Program) -> "Formulas":
-        """Return the formulas of a program; its temporaries are the quantities with a name."""
+        """Return the formulas of a program; its temporaries are the intermediate quantities."""
         inputs = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
         symbols = {name: Symbol(name, real=True) for name in [*inputs, *(name for name, _ in program.temporaries)]}
 

@@ -30,7 +30,11 @@ STATE, SIZE, NEXT = "x", "dt", "next"
 
 @dataclass(frozen=True)
 class RungeKutta:
-    """An explicit Runge-Kutta method: stage i adds ``weights[i][j] dt`` times the rates of each earlier stage j."""
+    """An explicit Runge-Kutta method, whose rates are evaluated at several stages within a step.
+
+    Stage i is at the time ``t + nodes[i] dt``; its state is the initial state plus ``stages[i][j] dt`` times the rates
+    at each earlier stage j. The step adds ``weights[j] dt`` times the rates at each stage j to the initial state.
+    """
 
     name: str
     order: int

@@ -88,7 +88,10 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficients of the products of powers of the generators ``names``, by the tuple of exponents."""
+        """Return the coefficient of each product of powers of the generators ``names``, by the exponents of the powers.
+
+        With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
+        """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
         for monomial, coefficient in self.terms.items():
@@ -211,7 +214,8 @@ def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | No
 def square_root(source: Polynomial) -> Polynomial:
     """Return the square root of a polynomial; raise ``ValueError`` if the polynomial is not a square.
 
-    The root is computed term by term from the lowest term up, as for a power series; its lowest term is positive.
+    Of the two square roots, the one with a positive lowest term is returned. It is computed term by term from its
+    lowest term up, as for a power series.
     """
     order = _exponents(sorted({name for monomial in source.terms for name, _ in monomial}))
     if not source:

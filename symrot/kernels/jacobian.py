@@ -103,7 +103,7 @@ def _distinct(kernel: Definition, variables: Sequence[str]) -> Sequence[str]:
 
 
 def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the components of an input argument, or the component itself."""
+    """Return the components of the input argument called ``name``, or the single component of that name."""
     for argument in kernel.inputs:
         if argument.name == name:
             return argument.components

@@ -92,7 +92,10 @@ def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
 
 
 def _translated(content: str, where: str) -> str:
-    """Return the body of a JavaScript function with the words of C; refuse words that only C has."""
+    """Return the body of a JavaScript function as C of the same meaning, such as ``sin(x)`` for ``Math.sin(x)``.
+
+    Raise CertificateError for words, such as types of C, that emitted JavaScript does not contain.
+    """
     place, words = 0, []
     while place < len(content):
         match = _TOKEN.match(content, place)

@@ -175,7 +175,10 @@ def _split(text: str) -> list[str]:
 
 
 def _translated(content: str, where: str) -> str:
-    """Return a formula with the words of C; refuse words that only C has."""
+    """Return a formula of JAX as the C formula of the same meaning, such as ``sin(x)`` for ``jnp.sin(x)``.
+
+    Raise CertificateError for words, such as names of C functions, that emitted JAX does not contain.
+    """
     place, words = 0, []
     while place < len(content):
         match = _TOKEN.match(content, place)

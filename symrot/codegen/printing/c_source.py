@@ -48,7 +48,7 @@ class Real:
     precision: str
 
     def literal(self, value: Fraction) -> str:
-        """Return the C literal of the number of this type that is nearest to a value: the shortest such literal."""
+        """Return the shortest C literal that stands for the number of this type that is nearest to a value."""
         digits = _shortest_float(value) if self.suffix else repr(float(value))
         return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 

@@ -15,7 +15,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """State of one computation: a function that evaluates constants, functions by name, and the coefficients so far."""
+    """State of one computation: how constants and functions are evaluated, and the coefficients so far."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]

@@ -101,7 +101,10 @@ def _needs(node: Expr) -> Iterator[Need]:
 
 
 def _granted(need: Need) -> bool:
-    """Return whether a condition follows from the assumptions on symbols; a condition on a constant does not."""
+    """Return whether a condition needs no proof, because it follows from SymPy's assumptions on the symbols.
+
+    For a formula without symbols, the result can be True only if the formula is a rational number.
+    """
     formula = need.formula
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
         return False

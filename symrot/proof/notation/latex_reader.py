@@ -235,7 +235,8 @@ class _Interpreter(Cursor):
     def font(self, font: Font) -> Any:
         r"""Return the value of a name in a special font.
 
-        The name is a function of a matrix, the identity ``\mathbf{1}``, or a name with a declared meaning.
+        The name may be a function that is applied to the matrix after it, such as the trace; the identity
+        ``\mathbf{1}``; or a name with a declared meaning.
         """
         word, place = _text(font.inside), self.index
         if word == "1":

@@ -146,7 +146,7 @@ class _Typesetter(Writer):
         return written.strip()
 
     def product(self, node: Node) -> str:
-        """Return a product as LaTeX: factors side by side; the factors before a divisor become its numerator."""
+        """Return a product as LaTeX: one fraction per divisor, with the factors before it above; then all others."""
         pieces: list[str] = []
         above: list[Node] = []
         for factor in node.args:
