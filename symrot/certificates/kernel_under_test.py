@@ -74,7 +74,10 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return the law that each derivative among the outputs is the exact derivative of its rate, if there are any."""
+    """Return the law about the outputs that are derivatives: each is the exact derivative of its rate.
+
+    The tuple is empty if no output is a derivative.
+    """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []
     for output in outputs:
@@ -95,7 +98,9 @@ class _ConstantsByName(dict[str, Symbol]):
 
 
 def scene_laws(equations: Equations) -> tuple[Law, ...]:
-    """Return the laws that the rates (the time derivatives of a scene's states) obey; no law is solved for the rates.
+    """Return the laws that the rates (the time derivatives of a scene's states) obey, as implicit equations.
+
+    They are the equations of motion before they are solved for the rates, so they also check the solution.
 
     ``I domega/dt + omega x (I omega + h)`` equals the torque in every component, even where a component of ``omega``
     is constant and therefore not a state; and ``dq/dt`` equals ``q (0, omega) / 2``.

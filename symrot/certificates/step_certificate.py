@@ -69,7 +69,10 @@ class StepUnderTest:
 
 @dataclass(frozen=True)
 class _Residue:
-    """An integer modulo PRIME, with a bound of the degree of the rational function whose value it is."""
+    """The value, modulo PRIME, of a rational function at a random point, with a bound of the function's degree.
+
+    The larger the degree, the more probable it is that two different functions agree at the point.
+    """
 
     value: int
     degree: int = 0
@@ -131,7 +134,11 @@ _RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
 
 
 def _exact(precision: str) -> Callable[[Fraction], _Residue]:
-    """Return the meaning of a constant: the simple fraction that rounds to it, or else the rounded number itself."""
+    """Return a function that converts a rounded constant of the C text to a residue of its exact number.
+
+    The exact number is the simple fraction that rounds to the constant if there is one, such as 1/3; otherwise it is
+    the constant itself.
+    """
 
     def residue(value: Fraction) -> _Residue:
         rounded = float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0])

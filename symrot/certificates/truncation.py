@@ -157,7 +157,10 @@ class _Power:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "_Power") -> "_Power":
-        """Return the function of this series with a value at 0 and a given derivative by its argument."""
+        """Return f of this series x(h), for the function f with f = ``start`` at x(0) and df/dx = ``slope``.
+
+        For example, ``slope`` is 1/x if f is the logarithm.
+        """
         count = len(self.terms)
         rates = [(k + 1) * self.terms[k + 1] for k in range(count - 1)]
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(count - 1))))
@@ -338,7 +341,10 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return by which fraction halving the box in each input lowers the largest bound; omit inputs without a gain."""
+    """Return, for each input, the fraction by which the largest bound decreases if the box is halved in that input.
+
+    Inputs for which it does not decrease are left out. ``whole`` are the bounds on the whole box.
+    """
     gains = {}
     for name, (low, high) in box.items():
         if low < high:
@@ -480,7 +486,11 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return a Taylor coefficient of the step's formula above the order of the method, at all sizes of the span."""
+        """Return intervals that contain the Taylor coefficient ``order``, in the step size, of the step's formula.
+
+        There is one interval for each state; it holds for all states of the box and all step sizes of ``span``. The
+        coefficients of a Taylor method above its own order are zero.
+        """
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
         count = order + 1

@@ -165,7 +165,8 @@ def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--flags",
         metavar="'CC FLAGS'",
-        help="your compiler flags, such as 'gcc -O3 -mfma': print what still holds with them",
+        help="your compiler flags, such as 'gcc -O3 -mfma': print which statements of the certificate still hold with "
+        "these flags",
     )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")

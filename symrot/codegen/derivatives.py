@@ -37,7 +37,11 @@ Groups = Sequence[Sequence[str]]  # inputs that belong together, such as the com
 
 @dataclass(frozen=True)
 class Formulas:
-    """Formulas of outputs, and the quantities with a name that they use, in the order of computation."""
+    """Formulas of outputs (``outputs``), and of the intermediate quantities in them (``named``).
+
+    Both are pairs of a name and a formula. The intermediate quantities are in the order of computation: a formula may
+    contain the earlier ones.
+    """
 
     outputs: tuple[tuple[str, Expr], ...]
     named: tuple[tuple[Symbol, Expr], ...] = ()
@@ -85,7 +89,8 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
     Notes
     -----
-    Functions such as sinc stay finite at zero only by the chain rule, which cancels the division by their argument.
+    Only the chain rule gives formulas for functions such as sinc that stay finite at zero: it cancels the division by
+    the argument.
     """
     explicit = _explicit(value.explicit, entries)
     every = [chained]
@@ -160,10 +165,10 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the derivative of a formula by each of its symbols; ``value`` is the formula's own symbol, if it has one.
+    """Return the derivative of a formula by each of its symbols.
 
-    With it, the derivative of a quotient ``y = a/b`` is ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is
-    ``a'/(2 y)``.
+    ``value`` is the symbol y that stands for the formula, if there is one. It saves operations: the derivative of a
+    quotient ``y = a/b`` is then ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is ``a'/(2 y)``.
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
@@ -214,7 +219,10 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 
 
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
-    """Return a new symbol for a derivative, which is added to ``named``; a number times a symbol needs none."""
+    """Add a derivative to the intermediate quantities ``named`` under a new symbol, and return the symbol.
+
+    A derivative that is a number, a symbol or a number times a symbol is returned unchanged.
+    """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope
     symbol = Symbol(f"{ANONYMOUS}{name.replace(ANONYMOUS, '')}", real=True)

@@ -1,4 +1,4 @@
-"""Dual numbers: a value with its derivatives, of any kind of number below.
+"""Dual numbers: a value with its derivatives, which are numbers of any kind (floats, Fractions, symbols, ..).
 
 A computation that is written once for any kind of number, evaluated with dual numbers, also gives the derivatives of
 its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., section 3.1.
@@ -74,7 +74,9 @@ class Dual:
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Return the functions of formulas for dual numbers, made from the functions for the numbers below.
+    """Return functions such as sin and sqrt for dual numbers, made from the functions for plain numbers.
+
+    ``functions`` maps the name of each function to its version for the kind of number in the dual numbers.
 
     Raises
     ------

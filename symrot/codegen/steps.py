@@ -59,10 +59,10 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A method together with the exact derivatives of its step by inputs of the step, which are names as in ``by``.
+    """A method (``plain``) together with the exact derivatives of its step by the inputs that ``by`` names.
 
-    A name is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one state or one
-    parameter.
+    A name in ``by`` is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one
+    state or one parameter.
     """
 
     plain: RungeKutta | TaylorSeries

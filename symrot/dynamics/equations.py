@@ -219,9 +219,10 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
     A guard is the formula whose sign the torque depends on, and its mode is the symbol that stands for this sign. The
     modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
-    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The formulas
-    of these values are definitions of the result. Motions near the surfaces return to them while all eigenvalues of B
-    have negative real parts; this is decided by A. Hurwitz's determinants of B.
+    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The
+    resulting equations contain these formulas of the modes as definitions. Motions near the surfaces return to them
+    while all eigenvalues of B have negative real parts, that is, while all of A. Hurwitz's determinants of B are
+    positive; the determinants are the ``attraction`` of the result.
 
     Raises
     ------

@@ -136,7 +136,10 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a formula contains ``where(condition, u, v)`` with a branch that must not always be evaluated."""
+        """Whether a formula contains a ``where(condition, u, v)`` of which a branch has a value only where it applies.
+
+        An example is ``where(omega_1 > 0, 1/omega_1, 0)``.
+        """
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
 

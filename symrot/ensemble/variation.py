@@ -147,9 +147,9 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants that do not vary in the field that contains the varying constant ``name``.
+        """Return the values of the components that do not vary, in the vector of which ``name`` is a varying component.
 
-        Constants that are not equal to a double within 2^-200 are left out.
+        A value that differs from the nearest double by more than 2^-200 is left out.
         """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
@@ -264,7 +264,10 @@ def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the name of the constant's field in the torque, and the component if the field is a vector."""
+    """Return the name of a constant in its torque, and its index if it is a component of a vector, else None.
+
+    ``entry`` is the ``entry`` of a :class:`Place`: this index, or the name of a parameter of the torque's formulas.
+    """
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 

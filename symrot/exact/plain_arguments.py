@@ -1,7 +1,8 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
-The polynomial ring has one variable for each call of a function that it does not know. A function has equal values at
-equal arguments, but the ring has one variable for each; so arguments are replaced by their normal forms first.
+The polynomial ring has one variable for each call, as written, of a function that it does not know. Two calls with
+equal arguments, such as ``f(sin(x)^2 + cos(x)^2)`` and ``f(1)``, have equal values but different variables; so
+arguments are replaced by their normal forms first.
 """
 
 from collections.abc import Sequence

@@ -88,10 +88,11 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return the constraints that one choice of signs can meet together at every point; leave out the others.
+    """Return constraints on signs such that, at every point, one choice of signs satisfies all of them.
 
-    Where a polynomial of a constraint is zero, its own sign is free. So two constraints may share only polynomials that
-    are nowhere zero, because formulas divide by them.
+    The other constraints are left out. Where a polynomial is zero, its sign can be chosen to satisfy a constraint, but
+    maybe not two constraints. So two of the constraints in the result share only polynomials that are nowhere zero,
+    because formulas divide by them.
     """
     divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}

@@ -100,7 +100,11 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return lines of a solution: a quantity by its law as it is written, then the simplified result if it differs."""
+    """Return one or two lines of a solution, which state the value of a quantity ``left``.
+
+    The first line has the value as the law gives it (``written``). The second line has the simplified value
+    (``result``); it is left out if the two are the same.
+    """
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 

@@ -129,9 +129,10 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all conditions hold for given modes.
+    """Return whether all conditions hold for given modes; a condition is a pair: a formula and the value it must have.
 
-    A condition that contains a mode in ``held``, along whose switch the motion slides, counts as true.
+    While the motion slides along a switch, its mode is in ``held`` and has no fixed value. A condition that contains
+    such a mode counts as true.
     """
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
@@ -172,7 +173,7 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return a key that proportional formulas have in common, and the sign of the factor between formula and key.
+    """Return a key that is equal for proportional formulas, and the sign of the factor between the formula and its key.
 
     Formulas with the same key have the same zeros, so that one search for zeros is enough for all of them. If a formula
     is not a polynomial in symbols and function calls, the key is the formula itself.
@@ -210,9 +211,9 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of the polynomial in time, states and sines of time that a formula is between two switches.
+    """Return the degree of a formula that, between two switches, is a polynomial in time, states and sines of time.
 
-    The result is RISKY if the formula may be undefined, have a pole or contain a short pulse.
+    The result is RISKY if the formula may be anything else: undefined, with a pole or with a short pulse.
     """
     kind = node[0]
     if kind in ("number", "symbol"):

@@ -23,7 +23,10 @@ DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "point
 
 
 class Dimension(NamedTuple):
-    """A dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg), of any number if None."""
+    """A dimension of a shape: a length in m, or a list of points (m) or of masses (kg).
+
+    ``size`` is the number of items in a list; None allows any number.
+    """
 
     name: str
     meaning: str

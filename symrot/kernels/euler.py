@@ -138,9 +138,9 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
     """Return (definitions, formulas) of the rates of the Euler angles, with a single division.
 
-    The axis of the first or of the last angle is an axis of the frame. The rate of the other one of these two angles is
-    divided by the determinant and gets a symbol; the rate of the angle about the frame's axis follows from a component
-    of omega and this symbol.
+    Of the first and the last angle, one rotates about an axis of the frame in which omega is given; call it a, and the
+    other one b. The rate of b is divided by the determinant and gets a symbol. The rate of a then needs no division by
+    the determinant: it follows from one component of omega and this symbol.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

@@ -175,8 +175,8 @@ class RateFacts:
     """The properties of a :class:`RateMatrix` that its entries do not contain: frame, parameters, determinant, inverse.
 
     The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
-    the determinant and the inverse with ``variable`` set to x, for x in ``domain``; their limits at the singular values
-    are taken along this line.
+    the determinant and the inverse with ``variable`` set to x, for x in ``domain``. The limits at the singular values
+    of the variable are computed from ``along``.
     """
 
     name: str

@@ -490,7 +490,10 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return ``x + y`` for x and y in [-pi/2, pi/2], rounded once; where ``odd`` is true, shifted by pi toward zero."""
+    """Return the angles ``x + y``, rounded once, for x and y in [-pi/2, pi/2].
+
+    Where ``odd`` is true, return ``x + y - pi`` if x + y is positive, and ``x + y + pi`` if it is negative.
+    """
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)

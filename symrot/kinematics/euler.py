@@ -279,12 +279,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, at which of the gimbal-lock attitudes of ``sequence`` it is locked too.
+    """Return, for each other sequence, the set of gimbal-lock attitudes of ``sequence`` at which it is locked too.
 
-    In gimbal lock the attitude depends on one combination of the first and the last angle. So one of the two is set to
-    zero here: the last angle of an intrinsic sequence, the first of an extrinsic one. The set contains values of the
-    other angle. It is empty for a sequence that is regular at all these attitudes, and contains all real numbers for a
-    sequence that locks at all of them.
+    In gimbal lock the attitude depends on one combination of the first and the last angle. One of the two is therefore
+    set to zero: the last angle of an intrinsic sequence, the first of an extrinsic one. The other angle then describes
+    the attitude, and each set contains values of this angle. The set is empty for a sequence that is regular at all
+    these attitudes; it contains all real numbers for a sequence that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle

@@ -16,7 +16,7 @@ __all__ = ["scene_values"]
 def scene_values(scene: Scene) -> dict[Expr, Expr]:
     """Return a map from symbols of derivations to the exact numbers of a scene at its start.
 
-    ``A``, ``B``, ``C`` are the moments about the axes of the body in which the scene gives it. ``theta`` is the angle
+    ``A``, ``B``, ``C`` are the moments of inertia about the body axes of the scene file. ``theta`` is the angle
     between the body's third axis and the vertical; ``alpha`` and ``n`` are angle and axis of the attitude; ``R_ij`` are
     the entries of the matrix from body to space; ``p_psi`` and ``p_phi`` are the angular momenta about the third axis
     and about the vertical.

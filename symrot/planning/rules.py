@@ -227,7 +227,7 @@ def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
     """Return whether a computation in doubles proves that no body component of a vector is zero at the start.
 
-    It takes a tenth of the time of exact arithmetic.
+    The computation takes a tenth of the time of exact arithmetic. False means that nothing was proven.
     """
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]

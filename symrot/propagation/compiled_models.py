@@ -153,10 +153,10 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return how the states of a plan are divided into blocks (omega and attitude) with separate errors.
+    """Return the blocks of states (omega, attitude) whose errors are measured separately, as edges and scales.
 
-    The first result lists edges: block k consists of the states from edge k up to edge k + 1. The second lists the
-    scales to which the errors are relative; 0 means the norm of the block itself.
+    Edges: block k consists of the states from edge k up to edge k + 1. Scales: the error of a block is divided by its
+    scale or, if the scale is 0, by the norm of the states in the block.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -184,7 +184,7 @@ def grows_late(plan: Plan) -> bool:
     """Return whether a torque's formulas may make a motion from rest grow as the third or a higher power of time.
 
     The first Taylor coefficients of this motion are zero, so that they do not show how large it becomes. An ensemble
-    therefore checks its steps one motion at a time.
+    therefore integrates such motions one by one, since only then each step can be checked.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
@@ -203,10 +203,10 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function that takes the parameters of the rates and returns bounds, by which SciPy's steps are limited.
+    """Return a function from the parameters of the rates to bounds that limit SciPy's steps; None without a limit.
 
-    The bounds say how far the torque formulas can deviate from their values at the start of a step. Return None if no
-    formula can have a pulse that a step misses, or if the rates have no Taylor series.
+    The bounds say how far the torque formulas can deviate from their values at the start of a step. There is no limit
+    if no formula can have a pulse that a step misses, or if the rates have no Taylor series.
     """
     if not has_formulas(plan):
         return None

@@ -139,7 +139,7 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Delete the exception that the function raised in the previous motion; a function is defined at all times."""
+        """Delete the exception of the previous motion; accept all times, as the domain of a function is not known."""
         self.error = None
 
     def failure(self) -> BaseException | None:

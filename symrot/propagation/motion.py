@@ -123,7 +123,7 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the kernel counts time from an instant that moves during the motion, so that phases keep digits."""
+        """Whether the kernel counts time from an epoch that moves along, so that phases such as ``a*t`` keep digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
@@ -143,7 +143,7 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function that takes parameters of the rates and returns bounds that limit SciPy's steps; None without limit.
+        """Function from the parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed.
 
         The bounds ensure that no step passes over a short pulse of a torque.
         """
@@ -170,7 +170,10 @@ class SteppedSetup:
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan, with checked arguments; other motions copy it."""
+        """The integration from the initial state of the setup's plan, with checked arguments.
+
+        Motions from other initial states copy this integration, so that the arguments are checked only once.
+        """
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -396,7 +399,7 @@ class ShiftableMotion(RestartableMotion):
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion with the clock on which these times keep the most digits: its own, or one that starts at 0."""
+    """Return the motion on the clock that keeps the most digits of these times: its own, or one with 0 at the start."""
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 

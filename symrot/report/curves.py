@@ -88,7 +88,7 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
 
 
 def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: float) -> list[Mask]:
-    """Return, for each curve, the samples at which it would cover a curve drawn before it (True); it is dashed there.
+    """Return one mask for each curve: True where the curve would hide an earlier one and is drawn dashed instead.
 
     Parameters
     ----------
@@ -120,7 +120,10 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield the two parts of a curve, the longer first, as (values with NaN outside the part, whether it is hidden)."""
+    """Yield the part of a curve that hides an earlier curve and the part that does not, the longer part first.
+
+    Each part is a pair: the values of the curve, NaN outside the part, and whether it is the part that hides.
+    """
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]

@@ -47,9 +47,9 @@ def require_matplotlib(option: str = "--plot") -> None:
 def dense(trajectory: Any) -> Any:
     """Return the motion at as many times as a smooth picture needs; without a dense solution, its own samples.
 
-    The times are evenly spaced. If there are too many rotations for that, each time is shifted by a multiple of the
-    golden ratio modulo 1, in units of the spacing: even spacing could show the rotation at the same phases again and
-    again.
+    The times are evenly spaced. If even the largest number of times is too small to follow every rotation, they are
+    made irregular: each is shifted by a multiple of the golden ratio modulo 1, in units of the spacing. Otherwise all
+    times could fall on the same few angles of the rotation, and the picture would show a slow motion.
     """
     from symrot.propagation.trajectory import Trajectory
 
@@ -106,7 +106,11 @@ def _legend(axes: Any) -> None:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time; a steady component, so large that the others look flat, is written as text."""
+    """Draw components over time.
+
+    A nearly constant component that is much larger than the others would make them look flat. It is not drawn; the
+    legend states its value.
+    """
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest

@@ -48,7 +48,7 @@ class Window:
 
     @property
     def spacing(self) -> float:
-        """Degrees between the parallels of the grid: the widest one in GRIDS that gives the window four parallels."""
+        """Degrees between parallels of the grid: the widest spacing in GRIDS that fits four times into the window."""
         across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
@@ -278,7 +278,10 @@ def draw_directions(
 
 
 def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
-    """Return the lower left point of the inset, in fractions of the axes: in the corner with the fewest path points."""
+    """Return where to place an inset, a small second drawing: in the corner that covers the fewest path points.
+
+    The result is the lower left corner of the inset, in fractions of the width and height of the axes.
+    """
     across = 0.5 + (x - window.centre[0]) / (2.0 * window.half)
     up = 0.5 + (y - window.centre[1]) / (2.0 * window.half)
 

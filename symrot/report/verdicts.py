@@ -30,7 +30,7 @@ def check(
 ) -> list[Verdict]:
     """Check a claim (text or LaTeX), or all claims of a file, and return the verdicts.
 
-    ``stated`` is the context of a claim in words: where, body, frame and sequence.
+    ``stated`` holds the keyword arguments ``where``, ``body``, ``frame`` and ``sequence`` of :func:`symrot.check`.
 
     A claim in a file that cannot be parsed gets the verdict ``"refused"``.
 
@@ -71,7 +71,7 @@ SIGNS = "=≈≃≤≥⩽⩾<>≠"
 
 
 def _is_file(source: str) -> bool:
-    """Return whether the argument of `symrot check` names a file instead of stating a claim, which has a sign."""
+    """Return whether the argument of `symrot check` names a file; a claim contains a relation such as ``==``."""
     is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
     return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 

@@ -47,9 +47,10 @@ def local_vertical(t: Floats, mean_motion: float) -> Floats:
 def vertical_angles(trajectory: Any) -> VerticalAngles:
     """Return the angles between the body and the vertical in a motion; :func:`has_vertical` must be true of its scene.
 
-    Under gravity there is one angle: of the line from the fixed point to the centre of mass, to the upward vertical.
-    Under a gravity gradient there are three, of the long axis (the axis of least inertia) to the local vertical: in the
-    plane of the orbit, out of it, and in all. The axis points to the side that is closer to the vertical at the start.
+    Under gravity there is one angle: between the upward vertical and the line from the fixed point to the centre of
+    mass. Under a gravity gradient the long axis (the axis of least inertia) is compared with the local vertical. The
+    three angles are the component in the plane of the orbit, the component out of that plane, and the whole angle. Of
+    the two directions of the long axis, the one closer to the vertical at the start is used.
     """
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":

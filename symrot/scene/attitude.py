@@ -231,7 +231,7 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def _by_shape(value: Any) -> Any:
-    """Return an attitude that is given as a list in the form of a table: ``[1, 0, 0, 0]`` -> ``{"quaternion": ..}``.
+    """Convert an attitude that is given as a list to a table: ``[1, 0, 0, 0]`` -> ``{"quaternion": [1, 0, 0, 0]}``.
 
     The list holds the four numbers of a quaternion, the three rows of a matrix, or a sequence with its angles in rad.
     A value of another form is returned unchanged.

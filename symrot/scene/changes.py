@@ -106,9 +106,11 @@ def changed(
 def present_value(
     content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
 ) -> Any:
-    """Return the present value that a key names, as the content gives it, or as it was read from the content.
+    """Return the present value that a key names.
 
-    The arguments are those of :func:`changed`, which replaces the value.
+    The value has the form in which the content gives it. If the content gives a vector or tensor in another form, such
+    as ``omega_space`` instead of omega, the value is the exact number that was read or computed from this form. The
+    arguments are those of :func:`changed`, which replaces the value.
 
     Raises
     ------

@@ -85,7 +85,7 @@ class Store(Protocol):
 
     @property
     def alone(self) -> str:
-        """The description of the statistics if they replaced the values of the outputs.
+        """A text that describes the statistics, if the store has removed the values of the outputs and has only these.
 
         It is empty if the values are stored.
         """
@@ -108,7 +108,8 @@ class Store(Protocol):
     def finish(self, tables: list[Table], alone: str) -> None:
         """Store the statistics.
 
-        If ``alone`` (their description) is not empty, remove the values of the outputs afterwards.
+        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
+        these values are then removed. If it is empty, the values stay.
         """
 
 

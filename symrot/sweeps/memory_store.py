@@ -39,7 +39,7 @@ class MemoryStore:
 
     @property
     def alone(self) -> str:
-        """The description of the statistics if they replaced the values of the outputs; empty while the sweep runs."""
+        """A text that describes the statistics, if they are stored without the values of the outputs; else empty."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -67,7 +67,8 @@ class MemoryStore:
     def finish(self, tables: list[Table], alone: str) -> None:
         """Store the statistics.
 
-        If ``alone`` (their description) is not empty, remove the values of the outputs afterwards.
+        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
+        these values are then removed. If it is empty, the values stay.
         """
         self.tables = tables
         if alone:

@@ -73,7 +73,7 @@ class ParquetStore:
 
     @property
     def alone(self) -> str:
-        """The description of the statistics if they replaced the values of the outputs; empty while the sweep runs."""
+        """A text that describes the statistics, if they are stored without the values of the outputs; else empty."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -148,7 +148,8 @@ class ParquetStore:
     def finish(self, tables: list[Table], alone: str) -> None:
         """Store the statistics.
 
-        Raise InputError if ``alone`` is not empty, since this store cannot remove the values.
+        A text ``alone`` that is not empty asks to remove the values of the outputs; raise InputError then, since this
+        store cannot remove them.
         """
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])

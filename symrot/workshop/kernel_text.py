@@ -50,7 +50,10 @@ Bounds = Mapping[str, Any]
 
 
 class KernelText(ABC):
-    """The texts of one kernel; :func:`symrot.emit` explains the argument ``bounds`` of its methods."""
+    """The texts of one kernel: its source in each language, and its certificate.
+
+    ``bounds``, an argument of the methods, are bounds of rounding errors; :func:`symrot.emit` explains it.
+    """
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate

@@ -80,7 +80,7 @@ def test_exact_steps_have_no_certificate(capsys):
 @pytest.mark.parametrize(
     ("scene", "options", "message"),
     [
-        ("spin_up", {}, "the steps rk4, taylor and dop853 exist"),
+        ("spin_up", {}, "use the step 'rk4', 'taylor' or 'dop853'"),
         ("gyrostat", {}, "without such a closed form"),
         ("friction_wheel", {}, "without switches"),
         ("tumbling_prism", {"target": "js"}, "expected the target 'c'"),

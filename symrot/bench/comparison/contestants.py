@@ -81,7 +81,10 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return the function ``prepare`` of a symrot method, which makes a propagator and returns the calling function."""
+    """Return the function ``prepare`` of a contestant that uses a method of symrot.
+
+    ``prepare`` makes a propagator, which is not timed, and returns a function that calls it.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Run:
         propagate = propagator(problem.scene, method, tolerance)

@@ -1,8 +1,8 @@
 """The benchmark suite: a work-precision study of one motion of each kind, with figures and a table.
 
-``symrot bench --suite`` writes into a folder (default ``generated/bench``): ``suite.png`` with the ratios of all
-motions, ``motions.png`` with the curves of each motion, ``suite.json`` with every study, and ``suite.md`` with the
-table. The seconds depend on the machine, so ``--check`` does not compare these files.
+``symrot bench --suite`` writes into a folder (default ``generated/bench``): ``suite.png`` with the ratios of
+other programs' times to symrot's, ``motions.png`` with the curves of each motion, ``suite.json`` with every study, and
+``suite.md`` with the table. The seconds depend on the machine, so ``--check`` does not compare these files.
 
 The files are written together after the last motion. Until then, finished studies are stored in ``unfinished.json``;
 after an interruption the same command continues from there.

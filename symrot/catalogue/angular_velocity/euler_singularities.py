@@ -150,7 +150,11 @@ def _adjugate(sequence: str) -> Matrix:
 
 
 def _strength(sequence: str, point: LockedPoint) -> Expr:
-    """Return the factor k of the limit of det B times the inverse: ``k s n^T``."""
+    """Return the factor k in ``k s n^T``, the limit of ``det B`` times the inverse of B at gimbal lock.
+
+    B maps angle rates to the angular velocity; s are the angle rates that do not rotate the body, and n is the body
+    axis about which no angle rates rotate it.
+    """
     silent, lost = Matrix(point.silent_rates), Matrix(point.lost_axis_b)
     return normal_form((_adjugate(sequence).subs({THETA: point.middle}) * lost).dot(silent) / silent.dot(silent))
 

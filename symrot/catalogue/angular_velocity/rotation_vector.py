@@ -53,7 +53,7 @@ def derive() -> Derivation:
         "The rotation leaves its axis unchanged.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", display="v"
     )
     d.step(
-        "The quaternion with half the angle gives the same rotation.",
+        "The quaternion with half the angle gives the same rotation as the rotation vector.",
         quaternion_to_dcm(quaternion_of_rotation_vector(V)),
         dcm_sb,
         because="the cosine and sine of $a$ follow from those of $a/2$",
@@ -71,7 +71,7 @@ def derive() -> Derivation:
         display=r"\left(1 - \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
     )
     d.step(
-        "The angular velocity in space has the same matrix with the opposite sign of $v$.",
+        "The matrix $B_s$ for the angular velocity in space is $B_b$ with the opposite sign of $v$.",
         dcm_rate,
         skew(space * DV) * dcm_sb,
         because=r"$\dot R = [\omega_s]_\times R$, all nine entries",

@@ -77,7 +77,7 @@ def derive() -> Derivation:
                 r"The product rule, with $\dot R = R\,[\omega_b]_\times$ and constant $I$ and $h$:",
                 r"R \left( \omega_b \times (I\,\omega_b + h) \right) + R\,I\,\dot\omega_b",
             ),
-            ("The equation of motion without torque says that the two terms cancel:", "0"),
+            (r"Without torque $I\,\dot\omega_b = -\omega_b \times (I\,\omega_b + h)$, so the two terms cancel:", "0"),
         ),
     )
     d.step(

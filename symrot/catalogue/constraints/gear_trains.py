@@ -47,7 +47,7 @@ def _contacts(d: Derivation) -> Matrix:
         r"Z_P)\,r$ from the sun's axis and moves with the carrier."
     )
     d.step(
-        "At the contact of sun and planet, their velocities differ by:",
+        "At the contact of sun and planet, the velocities of the two gears differ by:",
         velocity(origin, 0, SUN, inner) - velocity(middle, carried, PLANET, inner),
         Matrix([0, unit * (Z_S * (SUN - CARRIER) + Z_P * (PLANET - CARRIER)), 0]),
         because=r"the velocity of a point of a gear is $v + \omega \times r$",
@@ -61,7 +61,7 @@ def _contacts(d: Derivation) -> Matrix:
         named="Z_R",
     )
     d.step(
-        "At the contact of planet and ring, their velocities differ by:",
+        "At the contact of planet and ring, the velocities of the two gears differ by:",
         velocity(middle, carried, PLANET, outer) - velocity(origin, 0, RING, outer),
         Matrix([0, unit * (Z_P * (PLANET - CARRIER) - (Z_S + 2 * Z_P) * (RING - CARRIER)), 0]),
         because=r"the velocity of a point of a gear is $v + \omega \times r$",

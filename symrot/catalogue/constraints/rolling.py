@@ -188,7 +188,7 @@ def _nonholonomic(d: Derivation) -> None:
         named=r"\frac{d}{dt} (x - R\,\theta)",
     )
     d.step(
-        "The speed of the point of contact along the ground is the radius times the rate of the angle.",
+        "The speed of the point of contact along the ground is the radius times the rate of the angle of rotation.",
         squared((roll * symbols.dtheta)[:2, :]),
         (R * symbols.dtheta) ** 2,
         because=r"$\cos^2\psi + \sin^2\psi = 1$",

@@ -96,7 +96,7 @@ def _braked(d: Derivation) -> None:
         (r"\theta(t)", angle),
     )
     d.step(
-        "The rate satisfies the equation of motion with damping.",
+        r"The rate $\omega_3(t)$ satisfies the equation of motion with damping.",
         C * speed.diff(T),
         PUSH - DRAG * speed,
         because="an exponential is its own derivative",
@@ -258,8 +258,8 @@ def _by_kummer(d: Derivation) -> None:
     swept = {sweep: growth, speed: sweep * growth / speed, area: growth / speed}
     angle = (sweep * speed + across**2 * area) / (2 * growth)
     d.passage(
-        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of rotation of these axes, and let $Z = "
-        r"\operatorname{arsinh} (\Omega/\omega_1)$, with $\dot Z = \dot\Omega / S$."
+        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of rotation of the axes that follow the transverse "
+        r"angular velocity, and let $Z = \operatorname{arsinh} (\Omega/\omega_1)$, with $\dot Z = \dot\Omega / S$."
     )
     d.notation({"S": speed, "Z": area}, swept)
     d.step(

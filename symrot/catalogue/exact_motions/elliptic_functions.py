@@ -144,8 +144,8 @@ def _zeta(d: Derivation) -> None:
     )
     d.passage(
         "The integral of $Z(u + w) - Z(u - w) - 2 Z(w)$ over $u$ is called an elliptic integral of the third kind. The "
-        "next section shows that an angle with this rate is the argument of a theta function, so the integral need not "
-        "be computed."
+        "next section shows that an angle whose rate contains the integrand is the argument of a theta function, so "
+        "the integral need not be computed."
     )
 
 

@@ -46,8 +46,8 @@ def _one_particle(d: Derivation) -> None:
         display=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.step(
-        "The matrix of this linear map has the moments of inertia on its diagonal and the products of inertia, with a "
-        "minus sign, beside the diagonal.",
+        "The matrix of the linear map from angular velocity to angular momentum has the moments of inertia on its "
+        "diagonal and the products of inertia, with a minus sign, beside the diagonal.",
         momentum.jacobian(OMEGA),
         Matrix(inertia_of_point(mass, point)),
         because=r"the coefficients of the components of $\omega$ are compared",

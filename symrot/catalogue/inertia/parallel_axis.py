@@ -52,8 +52,8 @@ def derive() -> Derivation:
         named=r"F\left(\textstyle\sum m\,r\right)",
     )
     d.step(
-        "A body of mass $m$ with the tensor $I$ about its centre of mass has this tensor about a point at the offset "
-        "$d$.",
+        "A body of mass $m$ with the tensor $I$ about its centre of mass has the following tensor about a point at the "
+        "offset $d$.",
         Matrix(about_point(TENSOR, mass, D)),
         TENSOR + mass * (D.dot(D) * Matrix.eye(3) - D * D.T),
         because="the inertia tensor of a body is the sum over its points",

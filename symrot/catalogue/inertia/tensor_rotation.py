@@ -57,7 +57,8 @@ def derive() -> Derivation:
     )
     omega_s = dcm_sb * OMEGA
     d.step(
-        "The tensor of a rotating body changes in space by a commutator with the angular velocity.",
+        "In space, the rate of a rotating body's tensor is the commutator of the angular velocity's skew matrix and "
+        "the tensor.",
         rate(turned, attitude_rates()),
         skew(omega_s) * turned - turned * skew(omega_s),
         because=r"$\dot R = [\omega_s]_\times R$",

@@ -149,7 +149,10 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the indices of all operations between nodes ``leaf`` and ``index``: a polynomial in the leaf."""
+        """Return the indices of the operations by which node ``index`` is computed from node ``leaf`` and constants.
+
+        Raise CertificateError unless they are sums and products, so that node ``index`` is a polynomial in the leaf.
+        """
         if index == leaf:
             return set()
         node = self.operations.nodes[index]

@@ -149,8 +149,9 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names for the generators of a proof, ``g0_`` last: later generators come first in the order of variables.
+    """Return names for the generators of a proof in the order of the ring's variables: ``g2_``, ``g1_``, ``g0_`` for 3.
 
-    A relation of a generator, such as ``r^2 = P``, then has the newest generator in its leading term.
+    A proof uses ``g0_`` first. So a generator comes before all older ones, and in its relation, such as ``r^2 = P``
+    with older generators in P, ``r^2`` is the leading term.
     """
     return [f"g{k}_" for k in reversed(range(size))]

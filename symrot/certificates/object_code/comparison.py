@@ -198,8 +198,9 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
     """Split each fused multiply-add of machine code into a product and a sum; return (terms, comparisons, text).
 
-    The text shows a product that is fused in one place and rounded in another, or a number in comparisons that
-    contradict each other after the split; the text is empty if neither occurs.
+    The text is empty if the split is harmless. Otherwise it shows what makes the comparison with the C text invalid: a
+    product that is fused in one place and rounded in another, or a number whose known comparisons contradict each
+    other after the split.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):

@@ -228,7 +228,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the function that executes ``inc`` or ``dec``: it adds or subtracts (``name``) the constant ``number``."""
+    """Return the function that executes ``inc`` or ``dec`` as the instruction ``name`` (add, sub) with a constant."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)

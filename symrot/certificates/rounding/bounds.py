@@ -442,8 +442,8 @@ def _check_precision(
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected the choices (where the C text branches) for {item['output']} to be those of its "
-                "operations, got others"
+                f"{name}: expected the listed branches for {item['output']} to be those of the operations in the C "
+                "text, got others"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(

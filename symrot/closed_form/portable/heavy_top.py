@@ -160,10 +160,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the terms' functions in the theta series of alpha (i = 0) or beta (i = 1), at the argument ``place``.
+        """Return the values of the terms in the theta series of alpha (i = 0) or beta (i = 1), at ``place``.
 
-        There are four lists: the functions in the real part of the series, those in its imaginary part, and the
-        derivatives of the functions in both parts.
+        A term is a sine or cosine, or a hyperbolic one times a power of the nome. There are four lists, with one value
+        for each term: of the real part, of the imaginary part, and of their derivatives.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]

@@ -59,9 +59,10 @@ class Phase(NamedTuple):
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Reduce the phase plus ``more`` revolutions to within half of 1/``parts`` of a revolution around zero.
+        """Return the phase plus ``more`` revolutions, modulo one part (1/``parts``), and the number of parts removed.
 
-        Return the reduced phase, and the number of parts by which it was reduced, modulo ``parts``.
+        The reduced phase lies between -1/2 and 1/2 of a part. The number of removed parts is correct modulo ``parts``,
+        that is, up to whole revolutions. Example: with 4 parts, 0.3 revolutions give 0.05 and 1.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]

@@ -37,8 +37,8 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
         The terms to bound; None for a right-hand side that needs no bounds.
     order : int
         Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
-        deviate by at most D on a disc whose radius in time is ``reach`` steps, a step of length h has an error of at
-        most ``h D reach^-N/((N + 1)(1 - 1/reach))``.
+        deviate from constants by at most D on a disc whose radius in time is ``reach`` steps, a step of length h has an
+        error of at most ``h D reach^-N/((N + 1)(1 - 1/reach))``.
     edges : sequence of int
         State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
     """

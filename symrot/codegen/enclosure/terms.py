@@ -4,9 +4,9 @@ A stepper evaluates a right-hand side only at some points. A pulse, a switch or 
 no effect there, but an evaluation of the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows it:
 the resulting disc bounds all Taylor coefficients that a step omits.
 
-Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no bounds: they vary no
-faster than their coefficients show. Therefore each rate is split into its terms, and only the terms that are not such
-polynomials are bounded. The term "series" stands for the Taylor series of one quantity, see
+Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no bounds: from their
+coefficients follows how fast they can vary. Therefore each rate is split into its terms, and only the terms that are
+not such polynomials are bounded. The term "series" stands for the Taylor series of one quantity, see
 :mod:`symrot.codegen.taylor.recurrences`.
 
 Standard library only.
@@ -44,7 +44,10 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands that determine coefficient 0 of a series; only later coefficients depend on the others."""
+    """Return the operands of a series on which its coefficient 0, the value of the quantity, depends.
+
+    The other operands only affect later coefficients.
+    """
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 

@@ -40,7 +40,10 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the distinct formulas of angles whose sine or cosine a program computes, maybe inside another function."""
+    """Return the distinct formulas of all angles whose sine or cosine a program computes.
+
+    Functions that call sine or cosine, such as sinc, count too.
+    """
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
@@ -68,7 +71,7 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 
 
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
-    """Return the parameters, the temporaries and the result of a function, such as sinc, not in <math.h>.
+    """Return the definition of a function that <math.h> lacks, such as sinc: its parameters, temporaries and result.
 
     The result is a choice between two formulas, as (relation, left, right, then, else): the formula ``then`` if the
     relation between ``left`` and ``right`` holds, otherwise ``else``.

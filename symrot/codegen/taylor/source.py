@@ -186,9 +186,10 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C text of the four constants that multiply ``t_low``, the low part of the time, in a row of sums.
+        """Return the C text of the four constants that multiply ``t_low`` in a row of sums.
 
-        The text is empty if no sum of the row contains the time.
+        The time is the sum of two doubles, ``t`` and the much smaller ``t_low``. The text is empty if no sum of the row
+        contains the time.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -439,7 +440,7 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the C name for the value of a function at a phase ``a t + b``, given the C name of the phase."""
+    """Return the C name for the value of a function at an angle ``a t + b``, given the C name ``turn`` of the angle."""
     return f"{function}_{turn}"
 
 

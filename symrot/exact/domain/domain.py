@@ -43,9 +43,10 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the radicands that must not be negative for proofs to hold, although formulas may be real without this.
+    """Return the radicands that proofs assume to be nonnegative, although the formulas may be real without this.
 
-    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which is not real where f is zero and P is negative.
+    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``. Where f is zero and P is negative, the first is 0, but the
+    second is not real.
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))

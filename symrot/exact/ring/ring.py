@@ -150,7 +150,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append variables to the ring; return the index of each by its key."""
+        """Append a variable to the ring for each pair (key, expression); return a map from key to its index."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)

@@ -190,10 +190,10 @@ def _letters(formula: str, question: Question) -> set[str]:
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:
-    """Return the checker's error code for a formula with wrong units.
+    """Return the checker's code for the error, other than the wrong units, in a student's formula.
 
-    The symbols are renamed to names without a conventional unit. So the checker cannot object to the units, and looks
-    for other errors.
+    The checker stops at wrong units. So the symbols are renamed to names without a conventional unit, and it looks for
+    other errors.
     """
     letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
     plain = {letters[name]: "1" for name in question.symbols}

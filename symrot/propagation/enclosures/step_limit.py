@@ -7,8 +7,8 @@ deviation of the term from a constant, which bounds the Taylor coefficients that
 :mod:`symrot.codegen.enclosure.terms` explains which terms need bounds. The steppers in C use :file:`disc.h` and
 :file:`enclosure.h` for the same purpose.
 
-A disc is larger than the step: its radius in time is the length of the step times a factor called *reach*. The *missed
-share* is the part of a deviation on the disc that a step can omit.
+A disc is larger than the step: its radius in time is the length of the step times a factor called *reach*. A step
+misses at most a small fraction of the deviation on the disc; this fraction is the *missed share*.
 """
 
 import math
@@ -80,8 +80,9 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    If the disc contains zero, the root has no Taylor series there. The radius is then the size of the root times
-    ``whole``, which is 1 divided by the missed share (see the module's text).
+    If the disc contains zero, the root has no Taylor series there, and a step may miss all of it. The radius is then
+    the size of the root times ``whole``, which is 1 divided by the missed share (the fraction of a deviation that a
+    step misses): multiplied by this share, the radius counts the whole root as missed.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -169,9 +170,10 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
     """Generate and compile a Python function that computes the bounds of an enclosure much faster than disc by disc.
 
-    Its arguments are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then the weights of
-    the terms and their absolute values. The results are equal, but it omits the logarithms of sizes: if a bound is
-    infinite or NaN, the caller has to evaluate disc by disc.
+    Its arguments are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then
+    ``w``, the constant coefficients in the terms, and ``a``, their absolute values. The bounds are the same as disc by
+    disc, except where numbers overflow, because the function omits :attr:`Disc.log_size`. If a bound is infinite or
+    NaN, the caller has to evaluate disc by disc.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -249,8 +251,8 @@ class Deviations:
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
 
-        A bound is infinite if a pole may lie in these discs. Square roots near zero need ``whole``, which is 1 divided
-        by the missed share, see the module's text.
+        A bound is infinite if a pole may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction
+        of a deviation that a step misses; it is used for square roots near zero, of which a step may miss the whole.
         """
         self.spent += 1
         try:
@@ -262,9 +264,10 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed by :class:`Disc`.
+        """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed disc by disc.
 
-        These also contain logarithms of sizes, so that fewer bounds are infinite.
+        A :class:`Disc` also has the logarithm of the size of its numbers. Where the numbers themselves overflow, a
+        bound can still be finite.
         """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}

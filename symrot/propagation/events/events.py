@@ -328,8 +328,8 @@ def search(
 ) -> SearchResult:  # fmt: skip
     """Return the zeros of events along a motion, up to the terminal event if there is one.
 
-    A zero at the start ``t0`` is listed too, but does not end the motion. Its kind follows from the sign of the formula
-    after it.
+    A zero at the start ``t0`` is listed too, but does not end the motion. It is ``"rising"`` if the formula is
+    positive just after the start, and ``"falling"`` if the formula is negative there.
 
     Parameters
     ----------
@@ -474,8 +474,9 @@ def _settled(
 ) -> float | None:  # fmt: skip
     """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None.
 
-    No event is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
-    ``left`` counts, for each event, how many zeros remain until it ends the motion.
+    Nothing is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
+    ``left`` holds, for each event, the number of zeros after which it ends the motion (0: never); this function counts
+    it down.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0

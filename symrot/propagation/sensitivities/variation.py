@@ -1,9 +1,10 @@
 """The derivatives of a motion by initial values and constants: variational equations, by Taylor series.
 
 The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
-with one control of the steps. Its equations assume nothing about the numbers of the scene that a variable can change:
-a derivative by a moment of inertia needs the equations of a body without symmetry. A column of derivatives is
-integrated in multiples of a power of two, so that its size is near that of the motion.
+in common steps. Its equations assume nothing about the numbers of the scene that a variable can change:
+a derivative by a moment of inertia needs the equations of a body without symmetry. A column consists
+of the derivatives by one variable. For the integration it is multiplied by a power of two near the size of the
+variable, so that it is about as large as the states.
 """
 
 import json
@@ -139,7 +140,7 @@ def _initial(state: str) -> str:
 
 
 def _start(scene: Scene) -> dict[str, Fraction]:
-    """Return the initial state, by names that no constant has."""
+    """Return the initial values of the states, by names that differ from the names of all constants."""
     return dict(zip(map(_initial, STATES), (*scene.initial.omega_b, *scene.initial.quaternion), strict=True))
 
 
@@ -149,7 +150,10 @@ def _columns(scene: Scene, variables: Sequence[Variable]) -> list[_Column]:
 
 
 def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
-    """Return the structure in which a constant is zero or one only if no variable changes it."""
+    """Return the structure of a scene in which each constant is free that a variable of the derivatives changes.
+
+    Such a constant may be zero or one now. Other constants that are zero or one are used as such in the equations.
+    """
     moving = {name for column in columns for name in column.constants}
     general, inertia = general_structure(scene), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
@@ -275,7 +279,7 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin:
 
 
 def _size(scene: Scene, column: _Column) -> float:
-    """Return the power of two in which a column is integrated at first: near the value of the variable."""
+    """Return the power of two by which a column is first multiplied for the integration: near the variable's value."""
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)

@@ -48,7 +48,7 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion of which SciPy computes only a part: its two ends, s, and the evaluations before that part."""
+    """The whole motion of which SciPy computes a part: its ends, s, and the number of evaluations before the part."""
 
     start: float
     end: float
@@ -268,7 +268,7 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Number of evaluations so far, of the rates and of their bounds, which take about as long; it is limited."""
+        """Number of evaluations so far, of the rates and of their bounds together; ``max_steps`` limits this number."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -433,7 +433,7 @@ class _Integration:
     def _move_clock(self, clock: Clock, now: float) -> float:
         """Move the epoch, from which time is counted, to the present time, which is ``now`` s after the old epoch.
 
-        Return the present time since the new epoch: the rounding error of the new epoch.
+        Return the present time counted from the new epoch. It is not exactly zero, as the epoch is rounded to a double.
         """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)

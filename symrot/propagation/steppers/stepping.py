@@ -345,9 +345,9 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the part of the span from which on a step may use all of it.
+        """Return the error allowed in one step, and the least step length that may use it, as a fraction of the span.
 
-        A shorter step may use only a share of the error.
+        A shorter step may use only a share of this error.
         """
 
     @abstractmethod

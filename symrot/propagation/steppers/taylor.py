@@ -64,10 +64,10 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return how large a series' last terms may be in a step that covers a certain share of the span, and this share.
+    """Return a limit for the last terms of a series, and the step length, as a fraction of the span, for this limit.
 
-    For a step that is shorter by a factor r, this size is multiplied by r^(7/4): errors of single steps
-    add up about as the number of steps to this power. The final error then hardly depends on the span.
+    In a step that is shorter by a factor r, the limit is multiplied by r^(7/4), because errors of single steps add up
+    about as the number of steps to this power. The final error then hardly depends on the span.
 
     The constant is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
     intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.

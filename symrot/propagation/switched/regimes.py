@@ -33,10 +33,10 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that stays positive until a switching function (sign, floor, ..) changes its value.
+    """The guard of a switching function (sign, floor, ..): the function switches when ``formula`` becomes negative.
 
-    The value is called the mode of the function; ``change`` says how it changes when the formula becomes negative.
-    ``where`` lists the conditions under which the function affects the motion.
+    ``mode`` is the name of the number that replaces the function in the equations, and ``change`` says how this number
+    changes when the function switches. ``where`` lists the conditions under which the function affects the motion.
     """
 
     mode: str
@@ -62,8 +62,9 @@ class RegimeParameters(NamedTuple):
 class Regime:
     """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it.
 
-    The regime ends when a guard becomes zero; held guards are zero throughout. Time is counted from the instant at
-    which the motion enters the regime, and this instant is a parameter of rates and guards.
+    The regime ends when a guard becomes zero. If the motion slides, the arguments of the held functions are zero
+    throughout; they do not end the regime. Time is counted from the instant at which the motion enters the regime, and
+    this instant is a parameter of rates and guards.
     """
 
     def __init__(
@@ -165,7 +166,7 @@ class Regime:
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
         """Return the names of all states and parameters of output quantities that are zero at the state ``y``.
 
-        From them follows which arguments of sign functions stay zero without a torque.
+        With these names one can decide whether the argument x of a sign(x) stays zero by itself, as in a body at rest.
         """
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 

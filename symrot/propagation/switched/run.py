@@ -258,10 +258,11 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard of the function that should switch next at the present time, where the rates have no value.
+        """Return the guard of a function that still has to switch at the present time, or None.
 
-        If several functions switch at one time, they do so one after the other, and in between the rates may have no
-        value, such as sqrt(-1). The guard is one whose sign just after this time is at most ``most``, or None.
+        It is needed where the rates have no value. If several functions switch at one time, they do so one after the
+        other; in between, the rates may contain, for example, the root of a negative number. ``most`` is the largest
+        sign of the guard just after this time: -1 for negative guards only, 0 for guards that stay zero too.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -407,8 +408,8 @@ class SwitchedRun(RunState):
     ) -> tuple[list[Guard], list[Guard]]:
         """Return two lists of guards: those that are negative just after the start of a piece, and those at its end.
 
-        A guard is negative if its function (sign, floor, ..) should have switched. ``active`` and ``values``
-        belong to the present modes.
+        The function (sign, floor, ..) of a negative guard should have switched. ``active`` says, for each guard,
+        whether it can end the regime. ``values`` are the parameters of the guards' formulas for the present modes.
         """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
@@ -459,7 +460,7 @@ class SwitchedRun(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the argument of the switching function that a mode replaces, now or at ``place`` = (time, states).
 
-        For a floor the present value of the floor is subtracted, so that it switches at 0 and 1.
+        For floor(x) the result is x minus the present value of floor(x), which changes where the result is 0 or 1.
         """
         regime = self._regime(self.modes)
         return float(
@@ -527,8 +528,9 @@ class SwitchedRun(RunState):
     def _returns(self, mode: str) -> bool:
         """Return whether the argument of a sign has to be held at zero, so that the motion slides.
 
-        It has to if changing the sign once more would restore a state of all functions that occurred before at the
-        present time. A function with only a kink, such as abs, is not held if a function with a jump switched since.
+        It has to if one more change of the sign would give all switching functions the values that they had before at
+        the present time: without holding, the same changes would follow again and again. A function with only a kink,
+        such as abs, is not held if a function with a jump has switched since then.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -546,9 +548,10 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function that occurs in the argument of another one (``mode``) has switched after it.
+        """Return whether, at the present time, a function inside the argument of another function has switched last.
 
-        Only switches at the present time count. An example is the sign in abs(x + sign(y)).
+        ``mode`` names the outer function. In abs(x + sign(y)), the abs is the outer function and the sign the inner;
+        the result is true if the sign switched after the last switch of the abs.
         """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))

@@ -154,7 +154,7 @@ class SciPyPieces:
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
     """Return an iterator over pieces of the smooth motion that begins at the present state of a run, up to a switch.
 
-    ``regime`` contains the rates of the motion; ``rates`` lists the values of their parameters.
+    ``regime`` contains the compiled formulas of the rates; ``rates`` are the numbers to use as their parameters.
     """
     motion = regime.motion
     if isinstance(motion, SteppedMotion):

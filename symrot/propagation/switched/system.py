@@ -185,7 +185,10 @@ class SwitchedSystem:
 
     @cached_property
     def _chooses(self) -> bool:
-        """Whether a torque has a ``where(condition, u, v)`` with a branch that must not always be evaluated."""
+        """Whether a torque has a ``where(condition, u, v)`` of which a branch has a value only where it applies.
+
+        An example is ``where(omega_1 > 0, 1/omega_1, 0)``.
+        """
         return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
@@ -238,9 +241,10 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
 
-    The values are given by ``modes``; functions without effect are left out. For functions whose arguments stay at zero
-    (``held``), the formulas become linear in their values. Functions in ``tied`` have the value of a held function
-    or its negative, which replaces them.
+    ``modes`` holds the values; a function that has no effect for these values is left out. ``held`` contains the
+    functions whose arguments stay at zero: their values are unknowns, in which the formulas become linear. ``tied``
+    maps a function that switches together with a held one to (held function, 1 or -1): it is replaced by the held
+    function, or by its negative.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

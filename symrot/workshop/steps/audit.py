@@ -142,7 +142,10 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare a certificate with what symrot derives for the shipped scene that it names; return the result."""
+    """Compare a certificate with the one that symrot makes for the same shipped scene; return a sentence for the user.
+
+    If the certificate names no shipped scene, the sentence says that nothing was compared.
+    """
     options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
     match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""

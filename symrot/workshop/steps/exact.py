@@ -29,11 +29,12 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
 
 class _Form(NamedTuple):
-    """What a closed form adds to the text of a step.
+    """The parts of the C text of a step that depend on which closed form the motion has.
 
-    ``parameters`` holds (name, unit and meaning, value) of each number in p; ``tables`` are C definitions of constants;
-    ``arguments`` are the arguments of the C function that prepares a motion; ``named`` the body axes e1, e2, e3;
-    ``motion`` returns the motion from omega and quaternion, for parameters that are doubles.
+    ``parameters`` holds (name, unit and meaning, value) of each number in p, and ``tables`` the C definitions of
+    constants. ``arguments`` are the arguments of the C function that prepares a motion. ``named`` holds the indices of
+    the body axes that the closed form calls e1, e2, e3. ``motion`` is a function that returns the motion for an initial
+    omega and quaternion and for parameters that are doubles.
     """
 
     library: str
@@ -51,12 +52,12 @@ def _form(scene: Scene) -> _Form:
     if known is None or known.library not in _FORMS:
         raise InputError(
             f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step 'exact', "
-            "got a scene without such a closed form; the steps rk4, taylor and dop853 exist for it"
+            "got a scene without such a closed form; use the step 'rk4', 'taylor' or 'dop853'"
         )
     if not scene.body.principal.given_axes:
         raise InputError(
             f"{scene.name}: expected a body given along its principal axes for the step 'exact', got products of "
-            "inertia; the steps rk4, taylor and dop853 exist for it"
+            "inertia; use the step 'rk4', 'taylor' or 'dop853'"
         )
     return _FORMS[known.library](scene, known.derivation)
 
