@@ -289,7 +289,13 @@ def _symbols_by_place(signature: Signature) -> dict[str, str]:
 
 
 def formula_section(name: str, rates: Program, method: Method, source: str) -> Data:
-    """Return the section ``formula``: the proof that each C function computes the method; raise CertificateError."""
+    """Return the section ``formula`` of a step's certificate: the proof that each C function computes the method.
+
+    Raises
+    ------
+    CertificateError
+        If a C function computes another formula.
+    """
     return {f"symrot_{name}{suffix}": _proof(name, rates, method, source, suffix) for suffix in TYPES}
 
 

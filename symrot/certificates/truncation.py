@@ -392,7 +392,7 @@ def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) ->
 
 
 def _is_polynomial(node: Node) -> bool:
-    """Return whether a formula is written without functions, and without divisions but by numbers."""
+    """Return whether a formula contains no functions, no negative powers, and no divisions except by numbers."""
     if node[0] in ("number", "symbol"):
         return True
     if node[0] == "call" or (node[0] == "/" and node[2][0] != "number"):

@@ -246,7 +246,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """A group of trajectories with the same closed form and the same body axis in it."""
+    """A group of trajectories that have the same closed form, about the same body axis."""
 
     variation: Variation
     axis: int | None

@@ -93,7 +93,7 @@ class Case(ABC):
     proof_rings : tuple of FormulaRing
         Further rings in which entries were proven; their divisors become conditions.
     rings : tuple of FormulaRing
-        Further rings on which ``conditions`` rely.
+        Rings other than ``ring`` whose divisors, assumed to be nonzero, are among the ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None

@@ -26,8 +26,8 @@ __all__ = ["Chain", "Link", "chains"]
 class Link:
     """One expression of a chain, and the reason why it equals the expression before it in the chain.
 
-    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` pairs polynomials with
-    consequences of the hypotheses; the products of the pairs were subtracted.
+    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` holds pairs
+    (polynomial, expression that is zero by the hypotheses); the product of each pair was subtracted.
     """
 
     expression: Expr

@@ -273,10 +273,10 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return a or b of ``where(c, a, b)``, passed as ``node``, as a smooth formula.
+        """Return ``node``, which is the part a or b of ``where(c, a, b)``, as a smooth formula.
 
-        Its switches affect the motion only where ``share``, the formula of modes that represents c, equals ``value``:
-        1 for a, and 0 for b.
+        ``share`` is the formula of modes that is 1 where c holds, otherwise 0; ``value`` is 1 for a, and 0 for b. The
+        switches in the part affect the motion only where ``share`` equals ``value``.
         """
         outside = self.conditions
         self.conditions = (*outside, (share, value))

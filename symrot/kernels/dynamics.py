@@ -171,7 +171,8 @@ def _heavy_top(name: str, body: str) -> Definition:
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
     """Return symbols for twice the weight times the position of the centre of mass, and their definitions.
 
-    A component that is zero has no symbol.
+    The factor 2 is here because the torque is computed as the cross product of half the upward vertical with this
+    vector. A component that is zero has no symbol.
     """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

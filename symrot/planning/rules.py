@@ -135,7 +135,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return one sentence, in a list, that names the axes about which a torque's formulas are zero; or no sentence."""
+    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or no sentence."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []

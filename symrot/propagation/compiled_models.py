@@ -53,7 +53,7 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return the names, sizes and times of all files that derive kernels, as text: it identifies a version of them."""
+    """Return a text that identifies the version of the files that derive kernels: their names, sizes and times."""
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list

@@ -148,7 +148,10 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for a motion whose derivatives are not computed."""
+    """Raise InputError for a motion of which symrot computes no derivatives.
+
+    These are motions in Euler angles and motions under torques that jump, bend or have no formula.
+    """
     if state != "quaternion":
         raise InputError(f"sensitivities: expected the state 'quaternion', got {state!r}")
     if torque is not None:

@@ -79,7 +79,7 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the table rows about torques given by formulas: how steps notice short pulses, jumps and kinks in them."""
+    """Return the table rows that say how steps notice short pulses, jumps and kinks in torques given by formulas."""
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):

@@ -242,7 +242,7 @@ def _any_value(value: Any, where: str) -> Any:
 def _amount(shape: Shape) -> dict[str, Entry]:
     """Return the rules for reading the keys ``mass`` and ``density`` of a shape.
 
-    The shape ``points`` has neither key, since each point has its own mass.
+    The shape ``point_masses`` has neither key, since each point has its own mass.
     """
     if shape.kind == "points":
         return {}

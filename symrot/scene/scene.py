@@ -267,7 +267,7 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether a scene still has the body and the torques that were read from its content, unreplaced."""
+        """Return whether body and torques of a scene are still those read from its content: none was replaced."""
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 

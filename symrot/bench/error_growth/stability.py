@@ -171,7 +171,7 @@ def passes() -> list[dict[str, Any]]:
 
 
 def scene_distance(text: str | int) -> float:
-    """Return a distance to gimbal lock (an entry of ``PASSES``, rad) as a float."""
+    """Convert an entry of ``PASSES``, a distance to gimbal lock in rad, to a float."""
     top, _, bottom = str(text).partition("/")
     return float(top) / float(bottom or 1)
 

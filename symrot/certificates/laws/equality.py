@@ -31,9 +31,10 @@ MOST_ATOMS = 80
 
 @dataclass(frozen=True)
 class Truncation:
-    """A truncated series in the C text: its function, the value of x^2 (``split``) below which it is used, its bound.
+    """A series with finitely many terms by which the C text computes a function, such as (x - sin x)/x^3, near x = 0.
 
-    ``terms`` is the number of terms that the C text computes.
+    It is used where x^2 is less than ``split``, and has ``terms`` terms; ``relative`` bounds the relative error caused
+    by the terms that are left out.
     """
 
     function: str

@@ -121,7 +121,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle modulo one revolution, in double-double numbers; its series needs small ``|decay t|``."""
+        """Return the angle modulo one revolution, in double-double numbers, by a series for small ``|decay t|``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)

@@ -151,7 +151,8 @@ class Integers:
     def _constants(self, near: bool) -> list[float]:
         """Return the constants with which NumPy computes samples.
 
-        If ``near`` is false, all samples lie far from resonance on the side of the start; the other constants are zero.
+        If ``near`` is false, all samples lie far from resonance, on the side of the start. The constants for the other
+        side and for samples near resonance are then zero.
         """
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]

@@ -110,7 +110,10 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return the range (first, last + 1) of the states on which a formula depends, extended to whole blocks."""
+    """Return the range (first, last + 1) of the states on which a formula depends.
+
+    It is extended to whole blocks: groups of states, such as the quaternion, that share one error.
+    """
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:

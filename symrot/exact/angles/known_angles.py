@@ -28,7 +28,10 @@ def unbound(form: LinearForm) -> LinearForm:
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield pairs (h, n) for which ``coefficient`` is the sum of all n/2^h; h says how often an angle is halved."""
+    """Yield pairs (h, n) for which ``coefficient`` is the sum of all n/2^h: 5/4 gives (0, 1) and (2, 1).
+
+    A multiple of an angle is then a sum of angles, each n times the angle after h halvings.
+    """
     left, halvings = coefficient, 0
     while left:
         times = int(left)

@@ -202,7 +202,7 @@ def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> I
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Join the zeros of event formulas before the start t0 of a motion and those after it to one list.
+    """Return one list of all zeros of event formulas, from those before the start t0 of a motion and those after it.
 
     A zero at the start itself is listed once. It is of kind ``"touching"`` if the formula has the same sign before and
     after the start.

@@ -259,8 +259,8 @@ class _Search:
         """Return the intervals of a piece that may contain zeros: lists [event, start, end, sign before, sign after].
 
         Times are in s; the signs of the event's formula are 0 where they are not known. If an extremum of the formula
-        differs from zero by less than the error of the motion, it is added to ``doubts``. If the search takes more
-        operations than the limit, it ends early and the second result is an error; otherwise it is None.
+        differs from zero by less than the error of the motion, it is added to ``doubts``. The second result is
+        None, or an error if the search ended early because it needed more operations than the limit.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()

@@ -170,7 +170,7 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 def _quotient(
     scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers], step: Fraction
 ) -> dict[str, Fraction]:
-    """Return difference quotients of second order: central ones, or one-sided ones at the end of the valid values."""
+    """Return difference quotients of second order: central ones, or one-sided ones at a limit of validity."""
     assert variable.moved is not None
     schemes: tuple[dict[int, Fraction], ...] = (
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},

@@ -279,7 +279,7 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin:
 
 
 def _size(scene: Scene, column: _Column) -> float:
-    """Return the power of two by which a column is first multiplied for the integration: near the variable's value."""
+    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable."""
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)

@@ -177,7 +177,7 @@ class _Clocked(Integration):
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
         """Return the C function that continues a run, its parameters, and the largest number of steps per call.
 
-        If the present time is far from the epoch, from which the kernel counts time, the epoch is moved to it first.
+        The kernel counts time from an epoch; if the present time is far from the epoch, the epoch is moved there first.
         """
         tried = self.stepper.tried(run)
         window = run.window

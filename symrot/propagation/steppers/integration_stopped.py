@@ -28,7 +28,7 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return class and arguments for pickle, by which processes pass the error on; its samples are left out."""
+        """Return class and arguments for pickle, by which processes pass on the error, without the samples."""
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":

@@ -46,7 +46,7 @@ class Instant(NamedTuple):
     def reached(self, times: Floats, side: float) -> int:
         """Return how many of the times the motion has reached at this instant.
 
-        The times increase if ``side`` is 1 and decrease if it is -1, as the motion does.
+        The times are in the order of the motion: increasing if ``side`` is 1, decreasing if it is -1.
         """
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:

@@ -260,9 +260,9 @@ class SwitchedRun(RunState):
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
         """Return the guard of a function that still has to switch at the present time, or None.
 
-        It is needed where the rates have no value. If several functions switch at one time, they do so one after the
-        other; in between, the rates may contain, for example, the root of a negative number. ``most`` is the largest
-        sign of the guard just after this time: -1 for negative guards only, 0 for guards that stay zero too.
+        The guard is needed where the rates have no value. If several functions switch at one time, they do so one after
+        the other; in between, the rates may contain, for example, the root of a negative number. ``most`` is the
+        largest sign of the guard just after this time: -1 for negative guards only, 0 for guards that stay zero too.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -378,7 +378,7 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Move the time of a switch past the zero of its guard, whose formula depends on time alone, and return it.
+        """Return the time of a switch, moved past the zero of its guard; the guard must be a formula of time alone.
 
         The result is the first of a few instants at which the formula is not positive. At an earlier instant, the
         function (sign, floor, ..) would switch back at once.
@@ -548,10 +548,10 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether, at the present time, a function inside the argument of another function has switched last.
+        """Return whether a function inside the argument of another one has switched later than the outer function.
 
-        ``mode`` names the outer function. In abs(x + sign(y)), the abs is the outer function and the sign the inner;
-        the result is true if the sign switched after the last switch of the abs.
+        ``mode`` names the outer function, which is the abs in abs(x + sign(y)); the sign is the inner function. Only
+        switches at the present time count.
         """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))

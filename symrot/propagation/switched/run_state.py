@@ -53,8 +53,8 @@ class RunState:
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
         """Return a function that takes an epoch, s, and returns the rates and the parameters to use with this epoch.
 
-        The rates ``stepped`` are a compiled library or a Python function; with the parameters they count time from the
-        epoch. Return None if the rates do not depend on time.
+        The rates ``stepped`` are a compiled library or a Python function. With the returned parameters they count
+        time from the epoch. Return None if the rates do not depend on time.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

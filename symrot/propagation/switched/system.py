@@ -123,10 +123,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all switching functions just after the start, if ``mode`` is 1 or -1, as ``sign`` says.
+        """Return the values of all switching functions just after the start, if ``mode`` has the value ``sign``.
 
-        The argument of this function is zero at the start, so that both signs are possible. Functions whose arguments
-        contain it change with it.
+        ``mode`` names the value of a function such as sign whose argument is zero at the start, so that 1 and -1 are
+        possible. Functions whose arguments contain this function change with it.
         """
         return self._modes_at_start({mode: sign})[0]
 

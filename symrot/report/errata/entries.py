@@ -60,7 +60,8 @@ class Entry:
 def entries(findings_of_document: Sequence[Finding]) -> list[Entry]:
     """Return one entry for each error of a document.
 
-    A written erratum may describe several faulty formulas; a faulty formula without an erratum gets its own entry.
+    Most entries are errata that a person wrote, each about one or several faulty formulas. A faulty formula that no
+    erratum describes gets its own entry, with the reason that the checker gives.
     """
     failing = {item.claim["id"]: item for item in findings_of_document if item.outcome == "fails"}
     listed = [

@@ -107,7 +107,10 @@ def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Blo
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page that list faulty lines whose fault may be characters lost in the extraction."""
+    """Yield the blocks of the page that list formulas which may be right in the document itself.
+
+    Their faults may come from characters that were lost when the text was extracted from its PDF file.
+    """
     if not items:
         return
     yield Block("entry", "What the extraction may have lost")
