@@ -77,7 +77,7 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return random inputs in a kernel's box, one array (size, count) per argument; quaternions have unit norm."""
+    """Return random inputs in a kernel's bounds, one array (size, count) per argument; quaternions have unit norm."""
     kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
     for argument in kernel.inputs:

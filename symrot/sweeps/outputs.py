@@ -135,7 +135,7 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
 
 
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return the reduction for a word after @, such as ``end``, its time, and the end of the output's name."""
+    """Return the meaning of a word after @, such as ``end``: reduction, time (s), and ending of the output's name."""
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:

@@ -35,7 +35,7 @@ DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Par
 
 
 class ParquetStore:
-    """The store of a sweep in the folder at ``path``. If the folder has results of the same sweep, it is continued.
+    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
 
     Raises
     ------

@@ -38,7 +38,7 @@ IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finis
 
 
 class ZarrStore:
-    """The store of a sweep in the folder at ``path``. If the folder has results of the same sweep, it is continued.
+    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
 
     Raises
     ------

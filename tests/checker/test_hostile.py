@@ -47,7 +47,7 @@ TEXTS = {
     "a lambda": ("lambda: 1 == 1", "position 7"),
     "a Cyrillic letter": ("х == 1", "position 1"),
     "a wide letter": ("ｘ == 1", "position 1"),
-    "a vector that is a number": ("n̂ == 1", "two sides of one shape|a vector without a hat"),
+    "a vector that is a number": ("n̂ == 1", "two sides of the same shape|a vector without a hat"),
     "a hidden letter": ("x\u200b == 1", "position 2"),
     "a turned text": ("x\u202e == 1", "position 2"),
     "a null": ("x\0 == 1", "position 2"),

@@ -90,7 +90,7 @@ def test_a_neighbour_is_doubtful(claim):
 
 @pytest.mark.parametrize("claim", [
     "H = m_1 v_1 r_1 + m_2 v_2 r_2 + m_3 v_3 r_3", "ω₁ = θ̇₁ c₂ c₃ + θ̇₂ s₃", r"\omega_3 = \dot\theta_1 s_2 + \dot\theta_3",
-    "omega = [[1, 2, 3], [0, 1, 0], [0, 0, 1]] q'",
+    "omega = [[1, 2, 3], [0, 1, 0], [0, 0, 1]] q'", r"\dot L = M + \omega\times L",
 ])  # fmt: skip
 def test_a_formula_with_other_letters_is_left_open(claim):
     assert symrot.check(claim).verdict == "definition"

@@ -117,7 +117,7 @@ PEERS: dict[str, Callable[[StepText], tuple[str, Counter[str]]]] = {"SymForce": 
 
 
 def _driver(step: StepText) -> str:
-    """Return a C function that makes a step from each of n states, some times over."""
+    """Return a C function that makes one step from each of n states, and repeats all this a given number of times."""
     signature = step_signature(step.certified.rates, step.name)
     size = signature.argument("next").size
     called = ["t", f"x + {size}*k", *(["p"] if any(a.name == "p" for a in signature.arguments) else []), "dt",

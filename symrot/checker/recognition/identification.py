@@ -291,6 +291,8 @@ def _matched(
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
+        if quantity is not None and not (_keeps_rates(pairs) and (view.shape != (3, 1) or _keeps_units(pairs))):
+            continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
         if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.is_placed):
@@ -320,11 +322,37 @@ def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
     return all(mine == other or mine not in new for mine, other in names)
 
 
+def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
+    """Return whether the rate of a known symbol stands for the rate of the function that stands for the symbol.
+
+    If L_1 stands for L(t), then dL_1 stands for ``diff(L(t), t)`` and for no other letter of the claim.
+    """
+    renamed = dict(pairs)
+    functions = {mine: renamed[mine] for mine in renamed if renamed[mine].endswith("(t)") and f"d{mine}" in renamed}
+    return all(renamed[f"d{mine}"] == f"diff({function}, t)" for mine, function in functions.items())
+
+
+def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
+    """Return whether each letter of a formula for a vector may have the unit of the quantity for which it stands.
+
+    omega cannot be a velocity, nor M. Numbers without unit, as in a quaternion, have any letter, and the coordinates
+    x, y and z of a point may be the components of any vector.
+    """
+    with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
+    units = [(UNIT_OF_NAME.get(mine), unit_of(other)) for mine, other in with_unit]
+    return all(None in unit or unit[0] == unit[1] for unit in units) and all(
+        _has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")
+    )
+
+
 def _is_usual(mine: Expr, own: Expr) -> bool:
     """Return whether books use the letter ``own`` for quantities with the unit of the known symbol ``mine``."""
-    name = plain_name(as_text(own))
-    pattern = LETTERS.get(UNIT_OF_NAME.get(as_text(mine), ""))
-    return pattern is None or re.fullmatch(pattern, name) is not None
+    return _has_usual_letter(as_text(mine), as_text(own))
+
+
+def _has_usual_letter(mine: str, own: str) -> bool:
+    pattern = LETTERS.get(UNIT_OF_NAME.get(mine, ""))
+    return pattern is None or re.fullmatch(pattern, plain_name(own)) is not None
 
 
 @lru_cache(maxsize=20_000)

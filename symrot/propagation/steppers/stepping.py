@@ -181,9 +181,10 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside a segment, so near its end ``edge`` that it may replace ``edge``, where a torque jumps.
+    """Return a time just inside a segment, with which the rates are called at its end ``edge``.
 
-    ``other`` is the other end. The distance is too small to affect the choice of the first step.
+    There a torque that jumps at the edge has the value that it has inside. ``other`` is the other end of the segment.
+    The distance from the edge is too small to affect the choice of the first step.
     """
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)

@@ -68,7 +68,7 @@ def test_a_vector_without_a_hat_may_have_any_length():
     "claim", [r"\vec r = 1", "n̂ = 1", r"\mathbf a\times\mathbf b = 5", r"\mathbf a + \mathbf b = 1"]
 )
 def test_a_vector_is_no_number(claim):
-    with pytest.raises(InputError, match="two sides of one shape"):
+    with pytest.raises(InputError, match="two sides of the same shape"):
         symrot.check(claim)
 
 
