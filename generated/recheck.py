@@ -471,7 +471,7 @@ class Reader:
         return self.advance()
 
     def expression(self):
-        """Read a sum, or a choice between two sums; return its node. A choice inside a choice is refused."""
+        """Read a sum, or a C conditional such as ``a > b ? x : y``; return its node. Conditionals are not nested."""
         a = self.sum()
         if self.token.text not in COMPARISONS:
             return a

@@ -251,7 +251,10 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
 
 
 def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
-    """Return formulas in which the linear outputs are sums of inputs times derivatives."""
+    """Return formulas in which outputs that are linear in some inputs are computed from their derivatives.
+
+    Such an output f is the sum of x times df/dx over these inputs x, and its derivatives are needed anyway.
+    """
     outputs, named = dict(formulas.outputs), list(formulas.named)
     for output, terms in linear.items():
         outputs[output] = Add(*(symbol * _symbol(named, f"term_{entry}", outputs[entry]) for entry, symbol in terms))

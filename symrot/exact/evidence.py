@@ -62,7 +62,8 @@ class Counterexample:
 class Requirement:
     """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative.
 
-    The formulas ``signs`` must be nonnegative; those that are also in ``strict`` must be positive.
+    The formulas ``zeros`` must be zero, and the formulas ``signs`` nonnegative; those of ``signs`` that are also in
+    ``strict`` must be positive.
     """
 
     code: str

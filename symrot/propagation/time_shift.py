@@ -63,9 +63,10 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Function from the epoch, the scene time at which a clock shows 0, to the values of formulas that contain it.
+    """Values of formulas that contain the time of the scene at which the clock of a stepper shows 0.
 
-    Subexpressions that do not contain the epoch are computed once.
+    In a long motion the stepper sets its clock to 0 again and again. It calls this function with each new epoch: the
+    time, s, on the clock of the motion. Subexpressions without this time are computed once.
 
     Parameters
     ----------

@@ -109,8 +109,8 @@ class LostRecord(TypedDict):
 class DerivativeRecord(TypedDict):
     """The derivatives of the last sample by one variable, an initial value or a constant, whose unit is ``unit``.
 
-    ``omega`` is the derivative of the angular velocity, rad/s, and ``rotation`` that of the attitude: a small change
-    of the variable, times ``rotation``, is the rotation vector, rad, of the small rotation that it causes.
+    ``omega`` is the derivative of the angular velocity, rad/s, and ``rotation`` that of the attitude: a small change of
+    the variable, times ``rotation``, is the rotation vector, rad, in body axes, of the small rotation that it causes.
     """
 
     omega: list[float]

@@ -234,7 +234,10 @@ class LawProver(FormulaReader):
         )
 
     def sign(self, value: Quotient) -> PolyElement:
-        """Return the generator for the sign of a value (1 or -1); sign times value is the absolute value."""
+        """Return the symbol (a generator of the polynomial ring) that stands for the sign of a value, 1 or -1.
+
+        Its square is replaced by 1; the sign times the value is the absolute value.
+        """
         if value not in self.signs:
             generator = self.signs[value] = self.generator(f"copysign(1, {quotient_text(value)})")
             self.step("sign", quotient_text(value))

@@ -26,7 +26,7 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """The texts in the head comment of an emitted file that cannot be computed from the program."""
+    """Those texts in the head comment of an emitted file that do not follow from the program, such as its title."""
 
     title: str
     domain: str

@@ -31,7 +31,10 @@ class _Open(Exception):
 
 
 class _Term(NamedTuple):
-    """One term of a sum: a number times a constant formula, times an auxiliary state and a state; None stands for 1."""
+    """One term of a sum: ``number * constant * companion * state``.
+
+    ``companion`` is the index of an auxiliary state and ``state`` that of a state; None stands for the factor 1.
+    """
 
     companion: int | None
     number: Fraction

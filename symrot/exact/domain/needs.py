@@ -21,7 +21,10 @@ __all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
 
 @dataclass(frozen=True)
 class Need:
-    """A condition on a formula: ``">= 0"``, ``"> 0"``, ``"!= 0"``, or ``"real"`` for an unknown function."""
+    """A condition on a formula, without which a larger formula that contains it has no real value.
+
+    ``sign`` is ``">= 0"``, ``"> 0"`` or ``"!= 0"``; or ``"real"`` for a call of a function that symrot does not know.
+    """
 
     formula: Expr
     sign: str

@@ -67,7 +67,10 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A square root as a product of other square roots: ``sqrt(number) * product(roots) / product(factor^n)``."""
+    """A square root as a product of other square roots: ``sqrt(number) * product(roots) / product(factor^n)``.
+
+    ``divisors`` holds the pairs (factor, n).
+    """
 
     number: Rational
     roots: tuple[Root, ...]
