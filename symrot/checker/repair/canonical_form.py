@@ -53,7 +53,7 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree in which the vectors in dot and cross products are in alphabetical order, and scalars stand outside.
+    """Return a tree in which scalars are taken out of dot and cross products, and the vectors there are sorted by name.
 
     So ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. ``is_matrix`` tells whether a node is a vector or matrix.
     """
@@ -94,7 +94,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
 
 
 def _without_number(term: Node) -> tuple[Node, Fraction]:
-    """Split a canonical term into the term without its numeric coefficient, and that coefficient: (a*b, -2) for ``-2*a*b``."""
+    """Split a canonical term into the term without its number, and that number: (a*b, -2) for ``-2*a*b``."""
     if term.kind == "neg":
         core, size = _without_number(term.args[0])
         return core, -size

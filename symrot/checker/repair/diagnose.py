@@ -177,7 +177,8 @@ class _Search:
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
         """Yield candidates with two of the edits ``changes``, in different parts of the claim.
 
-        All are true at the test points. The pairs are tried in order of their cost until the budget of the search is spent.
+        All are true at the test points. The pairs are tried in order of their cost until the budget of the search is
+        spent.
         """
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)

@@ -123,8 +123,8 @@ class Edit:
 def neighbours(name: str, names: Collection[str]) -> list[str]:
     """Return those of ``names`` that people easily confuse with ``name``.
 
-    They have another index (``w_2`` for ``w_1``), other case (``a`` for ``A``), or are of the same family (``theta`` for
-    ``phi``).
+    They have another index (``w_2`` for ``w_1``), other case (``a`` for ``A``), or are of the same family (``theta``
+    for ``phi``).
     """
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
@@ -198,7 +198,8 @@ def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
 def _put(tree: Node, path: Path, made: Node) -> Node:
     """Return a tree with the node ``made`` in place of the part at ``path``.
 
-    If ``made`` is a sum inside a sum, or a product inside a product, the two are merged; signs of factors move to the front.
+    If ``made`` is a sum inside a sum, or a product inside a product, the two are merged; signs of factors move to the
+    front.
     """
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path

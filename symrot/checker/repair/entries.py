@@ -49,7 +49,7 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit of the formula ``cell`` that gives it the values ``targets`` at the test points, or None.
+    """Return the cheapest edit that gives the formula ``cell`` the values ``targets`` at the test points, or None.
 
     ``cell`` is an entry of a matrix. The code of the edit is ``none`` if the entry has these values already.
     """

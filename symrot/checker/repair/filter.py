@@ -124,7 +124,7 @@ class NumericFilter:
         return self.claim.with_parts({change.place: change.edit.tree for change in changes})
 
     def text(self, changes: Sequence[Change]) -> str:
-        """Return the claim after ``changes`` as text, to be offered as a repair: the equation and the edited definitions."""
+        """Return the claim after ``changes`` as text for a repair: the equation, and the edited definitions."""
         edited = self.edited(changes)
         assert edited.relation is not None
         claim = f"{text(edited.relation[1])} == {text(edited.relation[2])}"
@@ -182,7 +182,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return what depends on the definition of ``name``: names of definitions, and the ids of trees in the claim."""
+        """Return what depends on the definition of ``name``: names of definitions, and ids of trees in the claim."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):

@@ -84,10 +84,10 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield one repair of the tree at ``place``, a side of the claim: to each wrong entry it adds what this entry lacks.
+    """Yield one repair of the side ``place`` of the claim: to each wrong entry it adds what this entry lacks.
 
-    ``lacking`` maps the path of each wrong entry to the exact formula that must be added there. Nothing is yielded if one of
-    these formulas is too long to be a single term, as ``a*b + c*d`` is: adding it would repair anything.
+    ``lacking`` maps the path of each wrong entry to the exact formula that must be added there. Nothing is yielded if
+    one of these formulas is too long to be a single term, as ``a*b + c*d`` is: adding it would repair anything.
     """
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
@@ -149,7 +149,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that uses the name of one definition, where the name of another one makes the claim true."""
+    """Yield repairs of a side that put the name of one definition in place of another one, and so make the claim true."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
@@ -164,8 +164,8 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 def _term(residual: Any, piece: Node | None) -> Node | None:
     """Return ``residual``, the difference of two sides, as the tree of one missing term, such as ``m*r**2``; else None.
 
-    It must be short, and neither a sum nor divided by letters. If it has brackets, as ``m*(a + b)``, it must also be much
-    shorter than ``piece``, the formula to which it is added: otherwise it would repair anything.
+    It must be short, and neither a sum nor divided by letters. If it has brackets, as ``m*(a + b)``, it must also be
+    much shorter than ``piece``, the formula to which it is added: otherwise it would repair anything.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:

@@ -47,8 +47,8 @@ def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[
 def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
     """Return two edits of a claim as changes to apply together.
 
-    Edits of different trees are two changes; edits of one tree become one change. Return None if one edit changes the part
-    that the other one changes, or a part inside it.
+    Edits of different trees are two changes; edits of one tree become one change. Return None if one edit changes the
+    part that the other one changes, or a part inside it.
     """
     if first.place != second.place:
         return first, second
@@ -85,8 +85,8 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return left divided by right at the first test point, and the factor by which each edit of a side reduces it.
 
-    The factors are in a dictionary, by the index of the edit in ``changes``. Both results are empty if a side is no scalar,
-    or zero.
+    The factors are in a dictionary, by the index of the edit in ``changes``. Both results are empty if a side is no
+    scalar, or zero.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))

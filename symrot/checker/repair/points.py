@@ -126,7 +126,7 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point at which ``variable`` is a dual number with slope 1: values then have derivatives by it.
+        """Return a copy of the point at which ``variable`` is a dual number with slope 1, so that values have slopes by it.
 
         The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
         """

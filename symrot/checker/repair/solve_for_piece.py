@@ -113,7 +113,7 @@ class Vocabulary:
         return made
 
     def values(self, node: Node) -> Values | None:
-        """Return the values of a formula at the test points; None unless it is a scalar that is nonzero at all of them."""
+        """Return the values of a scalar formula at the test points; None if one of them is zero, or for a matrix."""
         try:
             values = [point.value(node) for point in self.numeric.points]
         except UndefinedValue:
@@ -135,9 +135,9 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product that, times a rational number ``ratio``, has ``values`` at the test points.
+        """Yield (product, ratio) for each product that has ``values`` at the test points after multiplication by ``ratio``.
 
-        Products with the fewest factors come first.
+        ``ratio`` is a rational number. Products with the fewest factors come first.
         """
         if not all(values):
             return
@@ -200,7 +200,7 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
-    """Return whether a change makes the claim true at the test points, and makes neither a side nor a definition zero."""
+    """Return whether a change makes the claim true at the test points, without making a side or a definition zero."""
     if not numeric.sensible(change.place, change.edit.tree):
         return False
     if change.place not in SIDES:
@@ -219,8 +219,8 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
     """Yield (path, part, is_term) for each part of a tree that may be replaced; ``is_term``: it is a term of a sum.
 
-    Arguments of sines, rotations and similar functions are left out. ``term`` is ``is_term`` of the tree itself, which is
-    at ``path``.
+    Arguments of sines, rotations and similar functions are left out. ``term`` is ``is_term`` of the tree itself, which
+    is at ``path``.
     """
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
@@ -242,8 +242,8 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
     """Return the values of an unknown at the test points with which the claim holds; None if the search fails.
 
-    The unknown is the node ``HOLE`` in the formula ``made``, which replaces the part at ``path`` of the tree ``place``. The
-    search starts from the values ``start``.
+    The unknown is the node ``HOLE`` in the formula ``made``, which replaces the part at ``path`` of the tree ``place``.
+    The search starts from the values ``start``.
     """
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
@@ -303,8 +303,8 @@ def _readings(
 ) -> Iterator[Reading]:
     """Yield the formulas that may replace the part ``piece``, each with the code and the cost of this edit.
 
-    ``values`` are the values of the part at the test points, and ``needed`` those with which the claim is true. ``term``:
-    the part is a term of a sum. ``outer``: it is a side of the claim, or directly below it in the tree.
+    ``values`` are the values of the part at the test points, and ``needed`` those with which the claim is true.
+    ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or directly below it in the tree.
     """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
