@@ -149,7 +149,10 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that put the name of one definition in place of another one, and so make the claim true."""
+    """Yield repairs of a side that put the name of one definition in place of another one.
+
+    All make the claim true at the test points.
+    """
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)

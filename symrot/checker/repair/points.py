@@ -126,9 +126,10 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point at which ``variable`` is a dual number with slope 1, so that values have slopes by it.
+        """Return a copy of the point at which ``variable`` is a dual number with slope 1.
 
-        The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
+        So the value of a tree at the copy also has the derivative by the variable: a symbol, ``f(t)``, or ``diff(f(t),
+        t)``.
         """
         order = 0
         inner = variable
