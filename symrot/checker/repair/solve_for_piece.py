@@ -135,9 +135,9 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product that has the given values after multiplication by the rational ``ratio``.
+        """Yield (product, ratio) for each product that has ``values`` at the test points when multiplied by ``ratio``.
 
-        ``values`` are values at the test points. Products with the fewest factors come first.
+        ``ratio`` is a rational number. Products with the fewest factors come first.
         """
         if not all(values):
             return
