@@ -49,13 +49,13 @@ ANGLES = ("phi", "theta", "psi")
 
 
 def frame_of(name: str) -> str:
-    """Return the frame that the name of a derived formula states: ``"body"``, ``"space"`` or an empty text."""
+    """Return the frame that a derived formula's ``name`` states: ``"body"``, ``"space"`` or an empty text."""
     match = _FRAME.search(name)
     return match[1] if match else ""
 
 
 def sequence_of(name: str) -> str:
-    """Return the sequence of Euler angles in the name of a derived formula, or an empty text."""
+    """Return the Euler sequence that a derived formula's ``name`` contains, such as "ZXZ", or an empty text."""
     return next((word for word in re.findall(r"[A-Za-z]+", name) if word in SEQUENCES), "")
 
 
@@ -66,24 +66,30 @@ def place_of(name: str) -> str:
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a derived formula fits a quantity of the claim and the stated context.
+    """Return whether a claim that gives ``quantity``, such as I_z, may mean the derived formula named ``name``.
 
-    The formula's name tells: "moment of inertia of a rod about an end" does not fit a context that states the centre.
+    It may not if the name contradicts the context: "moment of inertia of a rod about an end" contradicts "about the
+    centre".
     """
     return not any(misfits(context, name, quantity))
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return False for a sequence that books do not use for a top, if the body is a top and no sequence is stated.
+    """Return whether an Euler ``sequence`` is usual for the body of the context; False only for a top.
 
-    Books use ZXZ and ZYZ, whose second angle tilts the axis of the top.
+    For a top, books use ZXZ and ZYZ, whose second angle tilts the axis of the top. Every sequence is accepted if the
+    context names no top, or if it states a sequence itself.
     """
     is_top = context.body is not None and context.body.kind.title in TOPS
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield contradictions between a derived formula's name and the context: "for the space frame", "about an end"."""
+    """Yield how a derived formula with this ``name`` contradicts the context or the index of ``quantity``.
+
+    Each contradiction is a phrase about the formula, such as "for the space frame" if the context says that components
+    are in the body frame. The formula may be meant if there is none.
+    """
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):
@@ -129,7 +135,7 @@ DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "x
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether a formula, by its name, is for one of the given ``axes``.
+    """Return whether a moment of inertia, by its ``name``, is about one of the ``axes``, a text such as "xy".
 
     For a body that is neither round nor a rod, any axis is accepted.
     """
@@ -139,7 +145,7 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether a formula, by its name, is for an axis along a line such as a diameter of its body."""
+    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body: "about a diameter"."""
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -150,19 +156,18 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether a formula, by its name, is for an axis along the radius to a point of the rim or surface.
+    """Return whether the axis of a moment is the radius to a point of the rim or surface, by the formula's ``name``.
 
-    Hardly anybody means this axis by "about a point of the rim"; so return False if the ``quantity`` names its axis
-    itself, as I_x does.
+    Hardly anybody means this axis by "about a point of the rim". The result is False if the index of ``quantity`` names
+    the axis, as in I_x: then this axis may be meant.
     """
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
 
 def is_component(name: str, quantity: str) -> bool:
-    """Return whether a formula's name states the same component or axis as the index of a quantity does.
+    """Return whether a formula's ``name`` agrees with the index of ``quantity``: "z axis" with I_zz, not with I_xx.
 
-    Also return True for a quantity without an index, and for the rate of an angle such as dphi: they rule out no
-    component.
+    A quantity without an index agrees with every name, and so does the rate of an angle such as dphi.
     """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
@@ -177,7 +182,7 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula for a body names a place, such as an end, that the context leaves open.
+    """Return whether a body's formula has a place in its ``name``, "about an end", that the context leaves open.
 
     The context leaves it open with words such as "about the pivot": a pivot may be anywhere.
     """
@@ -189,10 +194,11 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether the renaming of a derived formula fits what the context says about the letters of a claim.
+    """Return whether the letters of a claim can mean the symbols of a derived formula, by the words of the context.
 
-    ``name`` is the name of the formula, which may contain a sequence of angles. ``mapping`` gives the renamed
-    symbols; any other letter of the claim stands for the symbol of the same name.
+    ``name`` is the name of the formula, and ``mapping`` the letter for each symbol that is renamed; any other of the
+    claim's ``letters`` means the symbol of the same name. Not admitted is, for example, theta for a radius if the
+    context says that theta is an angle.
     """
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
@@ -231,9 +237,10 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the sequence about fixed axes that equals one about moving axes with reversed angles; or vice versa.
+    """Return the sequence that gives the same rotation with its three angles in reverse order: xyz for ZYX.
 
-    The result is an empty text for a sequence such as ZXZ.
+    Lower case means fixed axes, upper case moving axes. The result is an empty text for a sequence such as ZXZ, whose
+    first and third angle all books call phi and psi: in reverse order these letters would have other meanings.
 
     Examples
     --------
@@ -244,7 +251,7 @@ def same_rotation(sequence: str) -> str:
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether a symbol of derived formulas fits a meaning in words: ``dphi`` fits "rate of precession"."""
+    """Return whether a derived formula's ``symbol`` can have a ``meaning``: ``dphi`` that of "rate of precession"."""
     pattern = meaning.quantity.symbols
     if not pattern:
         return True
@@ -261,10 +268,10 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor the name of the quantity implies.
+    """Return the words in a derived formula's ``name`` that neither the context nor the name of the quantity states.
 
-    A verdict that relies on the formula guesses these words. ``stated`` are the words that the quantity's name
-    implies, such as "moment of inertia z axis" for I_zz.
+    A verdict that relies on the formula has guessed these words, such as "about an end". ``stated`` are the words that
+    the quantity's name implies, such as "moment of inertia z axis" for I_zz.
     """
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:
@@ -300,7 +307,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text that tell formulas apart, each in one spelling."""
+    """Return the words of a text in one spelling, without those, such as "of", that tell no formulas apart."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

@@ -42,7 +42,7 @@ class Order:
 
 
 def has_order(sequence: str) -> bool:
-    """Return whether all books take phi as the first and psi as the third angle of a sequence: ZXZ, but not ZYX."""
+    """Return whether books agree on the first and third angle of a sequence: phi and psi in ZXZ; in ZYX they do not."""
     return bool(sequence) and sequence[0] == sequence[-1]
 
 
@@ -80,9 +80,9 @@ def place_by_words(title: str, sequence: str) -> int | None:
 
 
 def orders(context: Context, letters: Sequence[str], sequence: str) -> Iterator[Order]:
-    """Yield the possible assignments of letters to the angles of a sequence, the likeliest first.
+    """Yield the possible assignments of ``letters`` to the angles of a ``sequence``, the likeliest first.
 
-    There is none for letters that no book uses together.
+    Only orders that agree with the words of the context are yielded; none for letters that no book uses together.
     """
     spelled = {letter: letter_of_angle(letter) for letter in letters}
     family = next((own for own in FAMILIES if {*spelled.values()} <= {*own}), None)
@@ -119,9 +119,9 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the order in which three letters are the angles of a sequence if no words say so.
+    """Return the three letters of ``family`` in the order of the angles for which they stand if no words say otherwise.
 
-    It is their usual order, but psi, theta, phi in ZYX, where psi is the yaw.
+    This is ``family`` itself, such as (phi, theta, psi); but (psi, theta, phi) in ZYX, where psi is the yaw.
     """
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 

@@ -38,7 +38,7 @@ class Kind:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """The title and the synonyms in lower case and in one spelling."""
+        """All names of this kind of body, the title and the synonyms, in lower case and in one spelling."""
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 
@@ -77,7 +77,11 @@ class Body:
 
     @property
     def formulas(self) -> tuple[str, ...]:
-        """The phrases for the body in the names of derived formulas; they depend on the radii that are stated."""
+        """Phrases for the body in the names of derived formulas, such as "hollow cylinder".
+
+        Where a kind of body may have a thin wall, one stated radius means the thin wall, and two mean the thick one;
+        without a stated radius, the phrases for both are returned.
+        """
         if not self.kind.thin:
             return self.kind.formulas
         thin = self.kind.thin[0]
@@ -91,7 +95,7 @@ class Body:
         return self.rest if self.kind.shape else ""
 
     def has(self, name: str) -> bool:
-        """Return whether a derived formula, by its name, is for this body or for bodies of any kind."""
+        """Return whether the derived formula with this ``name`` is for this body or for bodies of any kind."""
         phrases = bodies_of_formula(name)
         own = {phrase for phrase in phrases if phrase in self.formulas}
         if self.axes and own and (axis := re.search(r", ([xyz]) axis", name)) and axis[1] not in self.axes:
@@ -220,7 +224,7 @@ _ALONG = re.compile(
 
 
 def bodies_of_formula(name: str) -> set[str]:
-    """Return the phrases for bodies that the name of a derived formula contains."""
+    """Return the bodies that the ``name`` of a derived formula mentions, as phrases: {"thin rod"}, or an empty set."""
     phrases: set[str] = set()
     rest = re.sub(r"\ban\b", "a", name)
     for phrase in _FORMULA_PHRASES:
@@ -273,15 +277,16 @@ def _scaled(term: str) -> tuple[str, Fraction]:
 
 
 def _dimensions(kind: Kind) -> list[Dimension]:
-    """Return the dimensions of a kind of body, and those of the same body with a thin wall."""
+    """Return the dimensions of a kind of body, such as radius and length, and those of its form with a thin wall."""
     shapes = [name for name in (kind.shape, *kind.thin[1:]) if name]
     return [dimension for name in shapes for dimension in SHAPES[name].dimensions]
 
 
 def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[str, Fraction], str]:
-    """Return the letters of a body's dimensions and moments, their factors, and the words that remain.
+    """Return letters of a body's dimensions and moments, their factors, and ``rest`` without the words for them.
 
-    ``words`` are in the upper and lower case of the input, ``rest`` in lower case.
+    From "of diameter d" follow the letters {"R": "d"} and the factors {"R": 1/2}. ``words`` are the user's words, in
+    which case matters; ``rest`` are those of them that are not yet used, in lower case.
     """
     letters: dict[str, str] = {}
     factors: dict[str, Fraction] = {}

@@ -61,7 +61,7 @@ MOST_NEAREST = 3
 
 
 def matrix_of(name: str) -> str:
-    """Return the name of the matrix of which a name is an entry: A for A_12, J_c for J_c_xy, otherwise the name."""
+    """Return the matrix of which ``name`` is an entry: A for A_12, J_c for J_c_xy; return any other name unchanged."""
     return re.sub(r"_?([xyz]{2}|[1-3]{2})$", "", name)
 
 
@@ -204,9 +204,9 @@ _OF_AXES = re.compile(
 
 
 def _has_line(body: Body, line: str) -> bool:
-    """Return whether a body has a line, as a disk has a diameter.
+    """Return whether a body has a ``line``: a disk has the line "about a diameter", a box has not.
 
-    Also return True if ``line`` is a place and no line, such as "about an end".
+    If ``line`` is a place, such as "about an end", the result is True for every body.
     """
     return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
 
@@ -226,7 +226,7 @@ def _described_body(body: Body) -> str:
 
 
 def _scaled(body: Body, symbol: str) -> str:
-    """Return a dimension of a body as text, with its factor, such as 2*L or d/2."""
+    """Return a dimension of a body in the letters of the user: d/2 for the ``symbol`` R of a body "of diameter d"."""
     above, below = body.factors.get(symbol, Fraction(1)).as_integer_ratio()
     return f"{above}*" * (above != 1) + body.letters[symbol] + f"/{below}" * (below != 1)
 
@@ -298,13 +298,16 @@ def _meaning(text: str, prefix: str) -> Meaning:
 
 
 def _original(rest: str, words: str) -> str:
-    """Return the words ``rest``, which are in lower case, with the capital letters that they have in ``words``."""
+    """Return the text ``rest``, a lower-case part of ``words``, with the capital letters that ``words`` have."""
     cases = {word.lower().strip(","): word.strip(",") for word in words.split()}
     return " ".join(cases.get(word.strip(","), word) for word in rest.split())
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a text can mean; ``x'`` is the rate of x if ``is_rate``, otherwise a name of its own."""
+    """Yield the names that a typed name can mean: ``x_dot`` is a name, and may also be ``dx``, the rate of x.
+
+    ``is_rate`` says that the words about the name mean a rate: then ``x'`` is ``dx``, otherwise the name ``x_prime``.
+    """
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare
@@ -321,14 +324,14 @@ def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator
 
 
 def quantities_of(tree: Node) -> Iterator[str]:
-    """Yield the names in a tree; for a time derivative of x, yield ``dx`` and x."""
+    """Yield the names in a formula's tree; for a time derivative of x, yield both ``dx`` and x."""
     for _, node in walk(tree):
         if (name := _name(node)) is not None:
             yield name
 
 
 def letters_of(tree: Node) -> Iterator[str]:
-    """Yield the names in a tree; for a time derivative of x, yield ``dx`` alone."""
+    """Yield the names in a formula's tree; for a time derivative of x, yield only ``dx``."""
     name = _name(tree)
     if name is not None:
         yield name
@@ -338,7 +341,7 @@ def letters_of(tree: Node) -> Iterator[str]:
 
 
 def _name(tree: Node) -> str | None:
-    """Return the name if a tree is a name or rate, with ``d`` in front for each time derivative; None for a formula."""
+    """Return the name that a tree is, x for ``x(t)`` and ``dx`` for its time derivative; None for any other formula."""
     if tree.kind == "name":
         return str(tree.value)
     if tree.kind == "call" and tree.value == "diff":
@@ -350,7 +353,7 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words state, or an empty text, and the remaining words."""
+    """Return the frame that some words state, "body", "space" or an empty text, and the words without those for it."""
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
             return frame, words.replace(match[0], " ", 1)
@@ -362,7 +365,10 @@ _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the quantity that words state, and the phrase that states it."""
+    """Return the quantity that some words state, such as a torque, and the phrase in ``plain`` that states it.
+
+    ``plain`` are the words in lower case and one spelling; ``words`` are those of the user, for error messages.
+    """
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
         for quantity in QUANTITIES
@@ -381,7 +387,10 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
 
 
 def _hint(words: str, phrases: dict[str, str]) -> str:
-    """Return the end of an error message, which suggests the known phrases that are most like some words."""
+    """Return the end of an error message: it suggests known phrases similar to ``words``, which symrot does not know.
+
+    ``phrases`` maps each known phrase to the text that the message suggests for it.
+    """
     nearest = get_close_matches(words, phrases, MOST_NEAREST, 0.4)
     whole = [phrase for phrase in phrases if set(words.split()) & set(phrase.split())]
     names = list(dict.fromkeys(phrases[phrase] for phrase in [*nearest, *whole]))[:MOST_NEAREST]
@@ -390,7 +399,7 @@ def _hint(words: str, phrases: dict[str, str]) -> str:
 
 
 def _body(words: str, prefix: str) -> Body:
-    """Return the body that words describe, with its letters spelled as in trees."""
+    """Return the body that words describe, with the letters of its dimensions spelled as in the trees of formulas."""
     body = body_of_words(words)
     if body is None:
         phrases = {phrase: phrase for kind in BODIES for phrase in kind.phrases}
@@ -487,7 +496,7 @@ def _check_consistency(context: Context, prefix: str) -> None:
 
 
 def _check_unit(meaning: Meaning, prefix: str) -> None:
-    """Raise InputError if nearly every reader takes a name for a quantity with another unit."""
+    """Raise InputError if the words give a name another unit than it has for most readers: "omega = mass"."""
     for name in meaning.names:
         usual = conventional_unit(name) if len(name) > 1 else None
         own = meaning.quantity.unit

@@ -99,10 +99,11 @@ USUAL: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class Meant:
-    """A known formula, written in the letters of a claim; ``mapping`` gives the letter for each of its symbols.
+    """A known formula that a claim may mean: ``value`` is the formula in the letters of the claim.
 
-    If ``open_place``, nothing states the place of its axis: the centre of mass, or an end. ``how`` says in which form
-    the formula is meant, such as "transposed"; it is empty for the formula as it is.
+    ``mapping`` gives the claim's letter for each renamed symbol. If ``open_place``, the formula is for an axis through
+    the centre of mass, or an end, and nothing in the claim says which. ``how`` says in which form the formula is meant,
+    such as "transposed"; it is empty for the formula as it is.
     """
 
     known: Known
@@ -118,11 +119,11 @@ class Meant:
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict, in its context, on a claim that gives a formula for a quantity.
+    """Return the verdict on a claim that gives a formula for a quantity, with the words of its context used.
 
-    ``verdict`` is "recognised", "doubtful" or "definition", by the known formulas that fit the context. If symrot
-    does not use some words of the context, the claim is called neither true nor false, and a note lists these
-    words.
+    ``verdict`` is the verdict so far, "recognised", "doubtful" or "definition", by the known formulas that fit the
+    context. Where all words are used, it may become "true" or "false"; otherwise it stays open, and a note lists the
+    words that symrot does not use.
     """
     verdict = _with_all_words(claim, named, verdict)
     sequence = claim.context.sequence
@@ -133,7 +134,11 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context; it stays open if some words are not understood or not used."""
+    """Return the verdict on a claim in its context: "true" or "false" only if all words of the context are used.
+
+    ``verdict`` is the verdict so far. With words that symrot does not understand, the result is "definition", which
+    leaves the claim open.
+    """
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
         return Verdict("definition", reason=reason)
@@ -159,8 +164,8 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
     """Replace "true" by "recognised" if the claim uses phi and psi in an unusual order that nothing states.
 
-    In ZYX psi is usually the first angle, and phi the third (yaw, pitch, roll); in every other sequence phi is the
-    first.
+    ``letters`` are those of the claim's formula. In ZYX psi is usually the first angle, and phi the third (yaw, pitch,
+    roll); in every other sequence phi is the first.
     """
     angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
     if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
@@ -220,7 +225,7 @@ def _with_axes(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _is_exchanged(known: Identification) -> bool:
-    """Return whether phi and psi of the known formula are exchanged in the claim."""
+    """Return whether the claim writes phi for the psi of the ``known`` formula, or psi for its phi."""
     return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
 
 
@@ -229,7 +234,10 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context, without regard to words that are not used."""
+    """Return the verdict on a claim by the formulas that its context means; words that nothing uses do not matter here.
+
+    ``verdict`` is the verdict so far; it is returned where the context adds nothing.
+    """
     context, quantity = claim.context, _name(named)
     stated = _stated_by_name(named)
     if verdict.verdict in ("recognised", "doubtful"):
@@ -268,10 +276,10 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that match a claim in another context, to tell the user which one the claim fits.
+    """Return the known formulas that a claim fits in another context, to tell the user which one it gives.
 
-    First the place is left out of the context, then the other frame is tried, and at last the whole context is left
-    out. The first of these that gives a match counts.
+    Three contexts are tried in turn: without the place ("about an end"), with the other frame, and none at all. The
+    formulas of the first that fits are returned.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -288,7 +296,11 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict "recognised" with a note on the words of the likeliest formula's name that nothing states."""
+    """Return the verdict "recognised" with a note: it lists the words of the formula's name that nothing states.
+
+    Of several recognised formulas, the one with the fewest such words counts. ``stated`` are the words that the name of
+    the claim's quantity implies.
+    """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
@@ -296,12 +308,12 @@ def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
 
 
 def _name(named: NamedFormula) -> str:
-    """Return the name of the quantity; the rate of a quantity has a ``d`` in front of the name."""
+    """Return the name of the quantity for which a claim gives a formula; for the rate of phi, return ``dphi``."""
     return f"d{named.name}" if named.is_rate else named.name
 
 
 def _stated_by_name(named: NamedFormula) -> str:
-    """Return the words of formulas' names that a quantity's name implies: "first component" for the index 1."""
+    """Return the words that the name of a claim's quantity implies: "first component" for the index 1."""
     words = list(words_of(named) or ())
     if re.fullmatch(r"[RACQ](_?\w+)?", named.name):
         words.append("rotation matrix")
@@ -318,17 +330,17 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" with a point where the claim differs from the formula that is meant."""
+    """Return the verdict "false" with the counterexample of ``decision``, where claim and meant formula differ."""
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
 
 def _decided(claim: Claim, left: Node, right: Node) -> Decision:
-    """Return the decision on the equation of two trees that use the names of a claim."""
+    """Return the decision whether two trees, which use the names of a claim, are equal."""
     return decide_equation(claim.with_relation(("==", left, right), alternatives=()).equation)
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" if a claim's formula provably differs from the correction in ``verdict``, or None."""
+    """Return the decision "false" if a claim's formula provably differs from the repair in ``verdict``; or None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -340,7 +352,11 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict by comparison with all known formulas that the context can mean; None if it stays open."""
+    """Return the verdict by comparing a claim with all known formulas that its context can mean.
+
+    Return None if the claim stays open, for example because one comparison is undecided. ``quantity`` is the name for
+    which the claim gives a formula, and ``stated`` are the words that this name implies.
+    """
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -369,9 +385,9 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the transposes of those known formulas that are rotation matrices, each with the decision on the formula.
+    """Yield each rotation matrix among the known formulas transposed, with the decision on the matrix itself.
 
-    A formula maps body components to space components; the author of a claim may mean the inverse map.
+    A known matrix maps body components to space components; the author of a claim may mean the inverse map.
     """
     for candidate, decision in decisions:
         if candidate.known.name.startswith("rotation matrix"):
@@ -379,7 +395,11 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states."""
+    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states.
+
+    Return None otherwise. ``quantity`` is the name for which the claim gives a formula, and ``stated`` are the words
+    that this name implies.
+    """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
     if context.body is None and (own_meaning is None or own_meaning.body is None):
@@ -414,9 +434,10 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether a decision leaves open that two formulas are equal: undecided, or true for some signs of symbols.
+    """Return whether a ``decision`` on two formulas leaves open that they are equal.
 
-    Formulas that are equal for special values only, such as equal moments of inertia, are different formulas.
+    It does if it is undecided, or if they are equal for some signs of the symbols. Formulas that are equal for special
+    values only, such as equal moments of inertia, are different formulas.
     """
     if decision.verdict == "conditional":
         return any(requirement.signs or not requirement.zeros for requirement in decision.requires)
@@ -426,7 +447,10 @@ def _is_open(decision: Decision) -> bool:
 def _different(
     claim: Claim, named: NamedFormula, verdict: Verdict, decisions: Sequence[tuple[Meant, Decision]]
 ) -> Verdict:
-    """Return the verdict "false" on a formula that differs from all known formulas that the context can mean."""
+    """Return the verdict "false" on a claim that differs from all known formulas that its context can mean.
+
+    ``decisions`` has each of these formulas with the decision that the claim differs from it.
+    """
     (candidate, decision), *_ = decisions
     diagnosis, repairs = verdict.diagnosis, verdict.repairs
     is_solved = named.solve is None or named.solve(named.formula) == named.formula
@@ -447,18 +471,19 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Merge repairs towards several formulas: first the best one for each formula, then the second ones.
+    """Merge the repairs towards several formulas, a tuple for each, best first; return at most three.
 
-    At most three are returned.
+    The best repair towards each formula comes first, then the second-best ones.
     """
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" if correcting one fault makes a claim's formula one of the known ones; or None.
+    """Return the verdict "doubtful" if one corrected fault makes a claim equal to a known formula; None otherwise.
 
-    It is used if nothing states the place of the axis, so that none of these formulas is certainly meant.
+    It is used if nothing states the place of the axis, so that none of the formulas in ``decisions`` is certainly
+    meant.
     """
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
@@ -471,7 +496,10 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault by which a claim's formula differs from a known one, and repairs of the claim's formula."""
+    """Return the fault by which a claim's formula differs from the known formula ``candidate``, and repairs.
+
+    ``decision`` is the one that they differ. The repairs turn the claim's formula into the known one; they may be none.
+    """
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
@@ -489,7 +517,7 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key that puts repairs with one fault first, then short ones."""
+    """Return a sort key of a repair, by which repairs of one fault come before those of two, and short before long."""
     return repair.code == "two_faults", len(repair.text)
 
 
@@ -502,9 +530,10 @@ def _equal(target: Any, value: Any) -> Decision | None:
 
 
 def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
-    """Yield each known formula for a quantity that fits a context, once for each assignment of its symbols.
+    """Yield each known formula that ``quantity`` can mean in a context, in the letters of a claim.
 
-    The symbols of the formula are replaced by symbols of ``value``, the formula of the claim.
+    ``value`` is the formula of the claim. If its letters can be assigned to the symbols in several ways, the known
+    formula is yielded once for each way. ``stated`` are the words that the name of the quantity implies.
     """
     shape = value.shape if is_matrix(value) else None
     own = atoms_of(list(value) if shape else [value]) - {time}
@@ -536,9 +565,10 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the angle rates that an assignment of letters does not use: ``dphi`` with ``diff(phi(t), t)`` for it.
+    """Return ``diff(phi(t), t)`` for ``dphi``, and so for each angle rate to which ``mapping`` assigns no letter.
 
-    The result is empty if the claim itself has no derivatives.
+    With these, a known formula can be compared with a claim that has derivatives. The result is empty if no member of
+    ``own``, the atoms of the claim, is a derivative.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
@@ -552,7 +582,7 @@ def _all_known() -> Iterator[Known]:
 
 
 def _with_letters(context: Context, target: Any) -> Any:
-    """Return a known formula with the letters that the context gives to the body's dimensions and moments."""
+    """Return the known formula ``target`` with the body's letters: r for R if the context says "disk of radius r"."""
     if context.body is None:
         return target
     letters = dict(context.body.letters)
@@ -568,9 +598,10 @@ def _with_letters(context: Context, target: Any) -> Any:
 def _assignments(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield mappings from the symbols of a known formula to the symbols and rates of a claim, by the usage of books.
+    """Yield ways to assign a claim's letters to the symbols of the known formula ``target``, as books use letters.
 
-    If the formula ``is_specific`` (for one body or one sequence), the claim may lack some of its symbols.
+    Each maps symbols of ``target`` to members of ``own``, the symbols and rates of the claim. All symbols need a
+    letter, unless the formula ``is_specific`` (for one body or one sequence).
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
@@ -602,9 +633,10 @@ def _assignments(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether the letter ``name`` of a claim can stand for a ``symbol`` of a known formula.
+    """Return whether the letter ``name`` of a claim can stand for a ``symbol`` of a known formula: r for R.
 
-    A letter or symbol in ``pinned`` can only stand for the one of the same name.
+    A letter in ``pinned``, which the context gives to a dimension of the body, stands only for the symbol of the same
+    name.
     """
     if symbol in pinned or name in pinned:
         return name == symbol
@@ -619,7 +651,7 @@ def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
 
 
 def _distinct(choices: Sequence[Sequence[Expr]]) -> Iterator[tuple[Expr, ...]]:
-    """Yield tuples with one member of each list in ``choices``, in which no member occurs twice."""
+    """Yield the tuples that take one member from each list in ``choices``, and no member twice."""
     if not choices:
         yield ()
         return

@@ -62,8 +62,8 @@ def determinants() -> dict[str, Expr]:
 def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
     """Return the verdict on a claim ``det T = f(theta)`` in which nothing defines T; None for other claims.
 
-    It is "recognised" if f is the determinant of a sequence's rate Jacobian (of the stated sequence, if one is
-    stated), and "doubtful" if one edit makes f such a determinant.
+    It is "recognised" if f is the determinant of a sequence's rate Jacobian (of the stated sequence, if one is stated),
+    and, if ``repair``, "doubtful" if one edit makes f such a determinant.
     """
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
@@ -79,14 +79,20 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
 
 
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
-    """Return whether a tree is the determinant of a matrix whose name may mean a rate Jacobian."""
+    """Return whether a tree is ``det(T)``, where T is a matrix without a definition that may be a rate Jacobian.
+
+    ``generic`` are the names of the matrices without a definition.
+    """
     return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
         str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
     )  # fmt: skip
 
 
 def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
-    """Return the rate Jacobians whose determinant equals a formula up to sign, those of the usual sequences first."""
+    """Return the rate Jacobians whose determinant is ``formula`` or its negative, those of usual sequences first.
+
+    ``letter`` is the claim's letter for the second angle.
+    """
     try:
         value = claim.interpreter().read(formula)
     except InputError:
@@ -116,7 +122,10 @@ def _is_equal(first: Expr, second: Expr) -> bool:
 
 
 def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit makes a formula the determinant of a rate Jacobian; otherwise None."""
+    """Return the verdict "doubtful" if one edit makes ``formula`` the determinant of a rate Jacobian; otherwise None.
+
+    ``own`` is the other side of the claim, ``det T``, and ``letter`` the claim's letter for the second angle.
+    """
     numeric = NumericFilter(claim)
     edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
     repairs: dict[str, Repair] = {}

@@ -19,10 +19,10 @@ MOST_PAIRS = 10
 def by_exchanged_letters(
     claim: Claim, named: NamedFormula, verdict: Verdict, judge: Callable[[Claim, NamedFormula], Verdict]
 ) -> Verdict:
-    """Return the verdict "doubtful" in place of "definition" if a formula is right once two letters are exchanged.
+    """Return "doubtful" in place of "definition" if a claim's formula is right once two of its letters are exchanged.
 
-    ``judge`` returns the verdict on a claim. Only letters that the context names are exchanged, and quantities of the
-    same unit: other letters may mean anything.
+    ``judge`` returns the verdict on a claim, here on the one with exchanged letters. Only two letters with a meaning in
+    the context and the same unit are exchanged: other letters may mean anything.
     """
     if verdict.verdict != "definition" or not claim.context.meanings or claim.relation is None:
         return verdict
@@ -50,6 +50,6 @@ def _names(formula: Node) -> set[str]:
 
 
 def _unit(claim: Claim, name: str) -> str:
-    """Return the unit of a quantity that the context names, otherwise an empty text."""
+    """Return the unit of the quantity that a ``name`` means by the words of the context; empty without words."""
     meaning = claim.context.meaning_of(name)
     return meaning.quantity.unit if meaning is not None else ""

@@ -32,11 +32,12 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" if a formula is a derived one without a term, or without a factor; otherwise None.
+    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or a factor; otherwise None.
 
-    ``meant`` are the derived formulas whose names the context states word by word, and their values. The claim lacks a
-    term if it equals such a formula with zero for one of the symbols that the claim does not have: ``m*g*l`` for
-    ``m*g*l + k*x``. It lacks a factor if the quotient of the two has none of the letters of the claim.
+    ``value`` is the claim's formula. ``meant`` are the derived formulas whose names the context states word by word,
+    and their values. A term lacks in ``m*g*l`` if ``m*g*l + k*x`` is derived: with zero for k, which the claim does not
+    have, both are equal. A factor lacks if the quotient of the two has only letters that the claim does not have.
+    ``assignments`` yields the ways to assign letters of the claim to the symbols of a derived formula.
     """
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
@@ -55,7 +56,12 @@ def with_lacking_letters(
 
 
 def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
-    """Return the fault of a formula that lacks symbols of another one, or an empty text."""
+    """Return how the formula ``value`` of a claim differs from the formula ``target`` that the claim should give.
+
+    It is "missing_term" if both are equal once a symbol of ``lacking``, which the claim does not have, is zero:
+    ``m*g*l`` for ``m*g*l + k*x``. It is "factor" if ``target/value`` has only symbols of ``lacking``: ``m*v`` for
+    ``m*v*r``. It is empty if neither holds.
+    """
     for symbol in sorted(lacking, key=str):
         rest = target.subs(symbol, 0)
         if not rest.has(symbol) and rest.is_finite is not False and decide(rest, value).verdict == "true":

@@ -256,10 +256,10 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Find the place of an axis in words; return its title, or an empty text, and the remaining words.
+    """Return the place of an axis in words, such as "about an end", or an empty text, and the words without it.
 
-    ``formulas`` are the phrases for the body in the names of formulas; a line that the body does not have is no
-    place.
+    ``formulas`` are the phrases for the body in the names of formulas. A line such as "about a diameter" counts only if
+    the body has it.
 
     Examples
     --------

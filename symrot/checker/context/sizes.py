@@ -20,9 +20,10 @@ __all__ = ["by_other_sizes"]
 
 @dataclass(frozen=True)
 class Size:
-    """Another choice of dimensions than symrot's, such as diameters, with its letters and the bodies it is used for.
+    """Dimensions of a body that authors use in place of symrot's, such as the diameter d for the radius R.
 
-    ``letters`` maps them to symrot's letters, and ``factor`` is symrot's dimension divided by the author's.
+    ``letters`` maps the author's letters to symrot's, {"d": "R"}; ``factor`` is symrot's dimension divided by the
+    author's, 1/2. ``bodies`` are the bodies for which the dimensions are used, and ``note`` tells the user of them.
     """
 
     letters: dict[str, str]
@@ -45,9 +46,10 @@ Judge = Callable[[Claim, NamedFormula], Verdict]
 
 
 def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return the verdict "recognised" on a moment of inertia that is exact with other dimensions; else ``verdict``.
+    """Return "recognised" for a moment of inertia that is right with other dimensions; otherwise ``verdict``.
 
-    Nothing is tried if the words about the body say what its letters are.
+    ``m*d^2/8`` is right for a disk if d is its diameter. ``judge`` returns the verdict on the claim with symrot's
+    dimensions. Nothing is tried if the words about the body say what its letters are.
     """
     body = claim.context.body
     if verdict.verdict not in TRIED or not MOMENT.fullmatch(named.name) or (body is not None and body.letters):
@@ -73,7 +75,7 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
 
 
 def _in_dimensions(tree: Node, size: Size) -> Node:
-    """Return a formula in which symrot's dimensions, such as the radius, replace the author's."""
+    """Return a formula in symrot's dimensions: ``m*(2*R)^2/8`` for ``m*d^2/8``, where d is the diameter."""
     if tree.kind == "name" and tree.value in size.letters:
         return product([number(1 / size.factor), Node("name", size.letters[str(tree.value)])])
     return replace(tree, args=tuple(_in_dimensions(child, size) for child in tree.args))

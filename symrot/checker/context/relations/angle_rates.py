@@ -30,9 +30,10 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about the rates of a sequence and the angular velocity.
+    """Yield the ways to read a claim as one about Euler angles, their rates, and the angular velocity's components.
 
-    There is none if the claim has another letter, no rate, or no component.
+    A way fixes the sequence, the frame, and which letter is which angle, as far as the context leaves them open. There
+    is none if the claim has a letter of another kind, no rate, or no component. ``sides`` are those of the claim.
     """
     names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
@@ -68,13 +69,17 @@ TIME = Symbol("t", real=True)
 
 
 def _plain(atom: Expr) -> str:
-    """Return the name of an atom (symbol or rate); the rate of an angle has a ``d`` in front."""
+    """Return the name of a symbol or rate of a claim: phi for ``phi(t)``, dphi for ``diff(phi(t), t)`` and phi_dot."""
     name = plain(as_text(atom))
     return f"d{name.removesuffix('_dot')}" if name.endswith("_dot") else name
 
 
 def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
-    """Return the frames that the components in a claim may belong to: the stated frame, or both."""
+    """Return the frames to which the components in a claim may belong: the stated frame, or both if none is stated.
+
+    ``names`` are the names of the claim's symbols and rates. ``components`` are those among them that are components of
+    the angular velocity; p, q and r belong to the body.
+    """
     stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
     stated |= {context.frame} if context.frame else set()
     if not stated and any(match[2] for match in components.values()):
@@ -83,7 +88,11 @@ def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.
 
 
 def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
-    """Return symbols for the three angles and their rates, named as in the claim where it has them."""
+    """Return symbols for the three angles of a sequence, and for their rates, with the letters of the claim.
+
+    ``places`` maps a letter of the claim to the place (0, 1 or 2) of its angle; angles without a letter are called q_1,
+    q_2 and so on.
+    """
     names = {place: name for name, place in places.items()}
     unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)
     letters = [names.get(place) or next(unused) for place in range(3)]
@@ -95,9 +104,10 @@ ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
 
 
 def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about an entry of the rotation matrix of the stated sequence.
+    """Yield the ways to read a claim as one about an entry of the stated sequence's rotation matrix: ``R_31 = ..``.
 
-    The matrix takes body components to space components in the first way, and is transposed in the second.
+    The matrix takes body components to space components in the first way, and is transposed in the second. There is
+    none if no sequence is stated, or if the claim has other letters than one entry and angles.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}

@@ -27,12 +27,16 @@ NAME = "relation for the angles of momentum and angular velocity to the axis of 
 
 
 def is_stated(context: Context) -> bool:
-    """Return whether the context says in words which of two angles belongs to the angular velocity."""
+    """Return whether the context says in words which angle is that of the angular momentum or the angular velocity."""
     return any(meaning.quantity.title in (OF_MOMENTUM, OF_VELOCITY) for meaning in context.meanings)
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as the relation between the two angles; none if it has other letters."""
+    """Yield the ways to read a claim as ``tan(theta) = A/C tan(gamma)``, the relation of the two angles to the axis.
+
+    theta is the angle of the angular momentum, gamma that of the angular velocity. There is none if the claim has other
+    letters than two angles and two moments of inertia. ``sides`` are those of the claim.
+    """
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}

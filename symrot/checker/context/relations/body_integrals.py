@@ -39,8 +39,8 @@ SIGNS = {"minus": 1, "plus": -1}
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
     """Yield the ways to read a claim as one about entries of the inertia tensor and integrals over the body.
 
-    There is none if the claim has another letter. Unless words say which sign products of inertia have, they have
-    the minus sign in the first way, and none in the second.
+    ``sides`` are those of the claim. There is none if the claim has another letter. Unless the context says whether
+    products of inertia have the minus sign, they have it in the first way, and not in the second.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -59,7 +59,10 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
 
 
 def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
-    """Return whether one side is a name of the inertia tensor and the other one its matrix of integrals over a body."""
+    """Return whether a claim equates the inertia tensor, as I or J, to its matrix of integrals over a body.
+
+    ``sides`` are those of the claim, in any order.
+    """
     matrices = [side for side in sides if is_matrix(side) and side.shape == (3, 3)]
     names = [side for side in sides if not is_matrix(side) and re.fullmatch("[IJ](_[A-Za-z])?", as_text(side))]
     if len(matrices) != 1 or len(names) != 1 or not matrices[0].atoms(Symbol):
@@ -69,13 +72,16 @@ def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
 
 
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor as a sum of symbols for the integrals of products of two coordinates."""
+    """Return an entry of the inertia tensor, ``integral_yy + integral_zz`` for row 0 and column 0.
+
+    Each term is a symbol for the integral of a product of two coordinates over the body's mass.
+    """
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
 
 
 def _product(powers: Sequence[int]) -> str:
-    """Return a product of coordinates as text, each as often as its power: "xx" for x^2."""
+    """Return a product of coordinates as text: "xxy" for x^2 y, whose ``powers`` are (2, 1, 0)."""
     return "".join(str(symbol) * power for symbol, power in zip(position, powers, strict=True))
 
 
@@ -85,7 +91,10 @@ MOMENT_OF_AXIS, MASS, GYRATION = (
 
 
 def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the reading of a claim as the definition of the radius of gyration; none if it has another letter."""
+    """Yield the reading of a claim as ``I = m k^2``, which defines the radius of gyration k, or nothing.
+
+    It is nothing if the claim has other letters than these three. ``sides`` are those of the claim.
+    """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
     if len(names) != len(patterns):

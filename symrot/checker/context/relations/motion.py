@@ -20,9 +20,9 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict that the relations between rates, components, momenta and energies imply for a claim.
+    """Return the verdict on a claim by the relations between angle rates, angular velocity, momenta and energies.
 
-    It is ``verdict`` if these relations do not decide the claim.
+    Where these relations do not decide the claim, return ``verdict``, the verdict so far.
     """
     equation, context = claim.equation, claim.context
     sides = equation.left, equation.right

@@ -61,7 +61,10 @@ class Substitution:
 
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
-    """Return the decision on an equation after a substitution; None if it cannot be decided."""
+    """Return the decision on an equation with the formulas of ``substitution`` in place of its letters; or None.
+
+    It is None if the equation with these formulas cannot be decided.
+    """
     try:
         return decide_equation(Equation(*_sides(equation, substitution)))
     except (InputError, TooLarge):
@@ -69,13 +72,16 @@ def decided(equation: Equation, substitution: Substitution) -> Decision | None:
 
 
 def may_be_true(equation: Equation, substitution: Substitution) -> bool:
-    """Return whether the two sides of an equation, after a substitution, are nearly equal at some points."""
+    """Return whether an equation holds nearly at some points, with the formulas of ``substitution`` for its letters.
+
+    This quick test by numbers leaves out readings of a claim before they are decided exactly.
+    """
     left, right = _sides(equation, substitution)
     return seems_zero(left - right)
 
 
 def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
-    """Return the two sides of an equation after a substitution."""
+    """Return both sides of an equation with the formulas of ``substitution`` in place of its letters."""
     left, right = substitution.sides or (equation.left, equation.right)
     return left.xreplace(substitution.values), right.xreplace(substitution.values)
 
@@ -83,10 +89,11 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict that follows from the possible ways to read a claim, or ``verdict`` if they add nothing.
+    """Return the verdict on a claim by ``substitutions``, the possible ways to read its letters; or ``verdict``.
 
-    The claim is true or recognised if it is true in one of them. If the context ``is_complete``, so that there is
-    no other way, the claim is false if it is false in all of them.
+    The claim is true or recognised if it holds in one of these ways. If ``is_complete``, the context rules out any
+    other way: then the claim is false if it holds in none of them. Otherwise the result is ``verdict``, the verdict so
+    far.
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict
@@ -111,7 +118,11 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return the verdict "true" if everything is stated, otherwise "recognised" with a note on what was guessed."""
+    """Return the verdict on a claim that holds in the readings ``true``: "true" if everything is stated.
+
+    Otherwise it is "recognised", with a note on what was guessed. ``is_complete`` says that the context rules out other
+    readings; ``verdict`` is the verdict so far, whose notes are used.
+    """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])
     if stated and context and is_complete:

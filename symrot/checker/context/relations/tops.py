@@ -54,7 +54,7 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about a symmetric top.
+    """Yield the ways to read a claim as one about a symmetric top; ``sides`` are those of the claim.
 
     There is none if a letter of the claim means nothing for a top, if the claim has no moment of inertia, or none of
     the derived quantities (momenta, spin and energies), or if the context names another body.
@@ -84,7 +84,11 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether one reading of the letters makes sense: no two mean the same, and a top is clearly meant."""
+    """Return whether a reading of a claim's letters makes sense: no two mean the same, and a top is clearly meant.
+
+    ``names`` are the claim's letters, ``values`` the quantity that each means, ``own`` the titles of the derived
+    quantities among these. ``has_body`` says that the context names a top.
+    """
     letters: dict[Expr, str] = {}
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
     moments = {A, C} & {*values.values()}
@@ -95,7 +99,11 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
 
 
 def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
-    """Yield (title, formula) for each quantity of a top that a letter can mean; a coordinate has an empty title."""
+    """Yield (title, formula) for each quantity of a top that the letter ``name`` can mean.
+
+    For s, one of them is ("spin along the axis", ``dpsi + dphi*cos(theta)``). A coordinate such as theta has an empty
+    title. ``formulas`` are the formulas by title, and ``load`` is the weight.
+    """
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
     for letters, symbol in COORDINATES:
@@ -119,7 +127,10 @@ SYMBOL_OF = {
 
 @cache
 def _formulas(load: Expr) -> dict[str, Expr]:
-    """Return the quantities of a top with a weight as formulas in its coordinates, each derived from the rates."""
+    """Return the formulas of a top's quantities, such as "kinetic energy", in its angles and their rates, by title.
+
+    ``load`` is the weight, ``m*g`` or one symbol. Momenta are derived from the kinetic energy.
+    """
     omega = (Matrix(rate_jacobian("ZXZ")) * Matrix(symbols.angle_rates)).subs(symbols.psi, 0)
     kinetic = expand(omega.dot(diag(A, A, C) * omega) / 2)
     potential = load * ARM * cos(THETA)
@@ -144,7 +155,11 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession, with the claim's formula substituted for the rate of precession."""
+    """Yield the condition of steady precession with a claim's formula for the rate: ``phi' = m g l/(C omega_3)``.
+
+    If the claim gives no formula for the rate of precession, yield nothing. ``sides`` are those of the claim; ``names``
+    and ``values`` are its letters and the quantities that they mean.
+    """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
             continue
