@@ -12,9 +12,12 @@ __all__ = ["canonical", "terms_of_equation", "with_ordered_products"]
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
     """Return a tree with sorted terms and scalar factors; a number with its sign comes first in a product.
 
+    So ``b*a*2`` and ``2*a*b`` have the same canonical form.
+
     Parameters
     ----------
     node : Node
+        The tree of a formula.
     is_matrix : function
         Tells whether a node is a matrix; matrices in a product stay in their order.
     """
@@ -33,7 +36,10 @@ def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
 
 
 def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
-    """Return the base of a factor and its numeric exponent; an exponent with letters remains a part of the base."""
+    """Return the base of a factor and its numeric exponent: (x, -1/2) for ``1/sqrt(x)``.
+
+    An exponent with letters remains a part of the base: (x**n, 1) for ``x**n``.
+    """
     if factor == Node("call", "sqrt", factor.args):
         base, exponent = _base_and_exponent(factor.args[0])
         return base, exponent / 2
@@ -47,7 +53,10 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree in which scalars are taken out of dot and cross products, and the vectors in these are sorted."""
+    """Return a tree in which scalars are taken out of dot and cross products, and the vectors there are sorted by name.
+
+    So ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. ``is_matrix`` tells whether a node is a vector or matrix.
+    """
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)
     if tree.kind != "call" or tree.value not in ("dot", "cross"):
@@ -70,8 +79,9 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
     """Return the terms of ``left - right``, each with its coefficient; equal terms are collected.
 
-    One coefficient is scaled to 1. The result is empty if both sides are the same formula. It is equal for
-    equations that differ only by moving terms from one side to the other, or by a number or sign on both sides.
+    All coefficients are divided by that of the first term in alphabetical order. So ``a == 2*b`` and ``4*b - 2*a == 0``
+    give the same pairs (a, 1), (b, -2). The result is empty if both sides are the same formula. ``is_matrix`` tells
+    whether a node is a matrix: matrices in a product stay in their order.
     """
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
@@ -84,7 +94,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
 
 
 def _without_number(term: Node) -> tuple[Node, Fraction]:
-    """Split a canonical term into the term without its numeric coefficient, and that coefficient."""
+    """Split a canonical term into the term without its number, and that number: (a*b, -2) for ``-2*a*b``."""
     if term.kind == "neg":
         core, size = _without_number(term.args[0])
         return core, -size

@@ -92,7 +92,7 @@ class _Search:
         self.tautologies: list[tuple[float, str]] = []  # cost and code of edits that make both sides the same formula
 
     def repairs(self) -> tuple[Repair, ...]:
-        """Return the proven repairs, the nearest first."""
+        """Return at most three proven repairs of the claim, the nearest first."""
         numeric = self.numeric
         if len(numeric.points) < 2:
             return ()
@@ -123,7 +123,10 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return other ways of writing the repairs in ``repairs``, if they are about as near to the claim."""
+        """Return further repairs, with the same values as one in ``repairs`` but written in another way.
+
+        They must be proven too, and cost at most a little more than the first of ``repairs``.
+        """
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -138,18 +141,24 @@ class _Search:
         return others
 
     def canonical_form(self, changes: Sequence[Change]) -> tuple[Node, ...]:
-        """Return the trees of a repaired claim in canonical form: their terms and scalar factors are sorted."""
+        """Return the sides and definitions of the claim after ``changes``, each as a tree in canonical form.
+
+        Repairs that differ only in the order of terms and factors have the same result.
+        """
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
 
     def equation_form(self, changes: Sequence[Change]) -> Any:
-        """Return the collected terms of a repaired claim, equal for repairs that only move terms between sides."""
+        """Return the collected terms of left - right after ``changes``, and the definitions in canonical form.
+
+        The result is equal for repairs that differ only by moving terms between the sides.
+        """
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
         left, right = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
         return terms_of_equation(left, right, self.numeric.is_matrix), canonical_definitions
 
     def trees(self, changes: Sequence[Change]) -> tuple[Node, ...]:
-        """Return the sides and the definitions of a repaired claim."""
+        """Return the trees of the claim after ``changes``: the left side, the right side, then each definition."""
         claim = self.numeric.edited(changes)
         assert claim.relation is not None
         return (*claim.relation[1:], *(tree for _, tree in claim.define))
@@ -166,9 +175,10 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield candidates with two edits, in different parts of the claim, that are true at the test points.
+        """Yield candidates with two of the edits ``changes``, in different parts of the claim.
 
-        Their number is limited by the budget of the search.
+        All are true at the test points. The pairs are tried in order of their cost until the budget of the search is
+        spent.
         """
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
@@ -180,10 +190,10 @@ class _Search:
                 return
 
     def is_tautology(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edit made both sides the same formula, so that the edited claim says nothing.
+        """Return whether ``changes`` make both sides the same formula, so that the edited claim says nothing.
 
-        If one side must not be edited, it is the result to be reached: then the sides may become the same
-        formula.
+        The result is always False if repairs may edit only one side: the other side is the result that the author wants
+        to reach, and an equal formula is then a proper repair.
         """
         if len(self.numeric.sides_to_edit) < len(SIDES):
             return False
@@ -191,9 +201,10 @@ class _Search:
         return not terms_of_equation(left, right, self.numeric.is_matrix)
 
     def cancels(self, equation: Equation) -> bool:
-        """Return whether one repaired side cancels to a number, such as ``x/(x/y)/y``, or both do, as in ``x/x == 1``.
+        """Return whether the repaired claim ``equation`` says nothing, since letters of a side cancel.
 
-        Such a repair says nothing. A side that becomes zero does not count.
+        This is so if a side with letters became a nonzero number, as ``x/(x/y)/y`` does, or if both sides are nonzero
+        numbers, as in ``x/x == 1``.
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
@@ -201,7 +212,10 @@ class _Search:
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return up to ``most`` repairs: the first candidates that are proven, without two of equal value."""
+        """Return up to ``most`` repairs: those first candidates that the exact engine proves to be true.
+
+        Of candidates with equal values, or with equal terms of left - right, only the first is tried.
+        """
         repairs: list[Repair] = []
         attempts = 0
         bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})
@@ -247,7 +261,8 @@ class _Search:
 def _ranges(decision: Decision) -> str:
     """Return the condition on signs or angles under which a formula holds, such as ``"0 <= x <= pi"``.
 
-    The text is empty if the decision is not "conditional", or needs more than signs.
+    The text is empty if the verdict of ``decision`` is not "conditional", or if its condition is not only one on signs,
+    as ``A == B`` is not.
     """
     needed = decision.requires[:1]
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)

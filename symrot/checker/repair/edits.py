@@ -109,7 +109,10 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 @dataclass(frozen=True)
 class Edit:
-    """A changed tree, with the code of the corrected fault and the cost; ``path`` leads to the changed part."""
+    """A tree after one edit, with a code that names the corrected fault, such as ``sign_of_term``, and the edit's cost.
+
+    ``path`` leads to the edited part; it is empty if the whole tree changes.
+    """
 
     code: str
     cost: float
@@ -118,7 +121,11 @@ class Edit:
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return the names that are easily confused with a name: with another index, other case, or of the same family."""
+    """Return those of ``names`` that people easily confuse with ``name``.
+
+    They have another index (``w_2`` for ``w_1``), other case (``a`` for ``A``), or are of the same family (``theta``
+    for ``phi``).
+    """
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
@@ -174,7 +181,10 @@ def single_edits(
 
 
 def _has_values(node: Node) -> bool:
-    """Return whether a node is a matrix or a root: a square may be missing on an entry or under the root."""
+    """Return whether a node is a call of ``Matrix``, ``diag`` or ``sqrt``.
+
+    A square may be missing on an entry of a matrix or under a root; other calls are not searched for missing squares.
+    """
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
@@ -186,7 +196,11 @@ def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree with ``made`` in place of the part at a path. Signs move to the front; nested sums are merged."""
+    """Return a tree with the node ``made`` in place of the part at ``path``.
+
+    If ``made`` is a sum inside a sum, or a product inside a product, the two are merged; signs of factors move to the
+    front.
+    """
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -210,7 +224,19 @@ def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
     matrices: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[Change]:  # fmt: skip
-    """Yield the edits of the part at a path. ``lone`` is True for an entry of a matrix or list."""
+    """Yield the edits of the part ``node``, which is at ``path`` in its tree: code, new part and additional cost.
+
+    Parameters
+    ----------
+    names, functions : collection of str
+        Symbols and definitions, and functions of time; an edit may exchange them for each other.
+    matrices : function
+        Tells whether a node is a matrix.
+    order : str
+        The code of the fault if two matrices in a product are in the wrong order.
+    lone : bool
+        Whether the part is an entry of a matrix or list; only such an entry, or a whole side, may become 0.
+    """
     if node.kind == "sum":
         yield from _of_sum(node, matrices)
     elif node.kind == "product":
@@ -245,7 +271,7 @@ def _changes(
 
 
 def _of_rows(node: Node) -> Iterator[Change]:
-    """Yield the transpose of a square matrix whose rows are written out."""
+    """Yield the edit that transposes a matrix if it is square and its rows are written out; otherwise yield nothing."""
     (written,) = node.args
     size = len(written.args)
     if size > 1 and all(row.kind == "list" and len(row.args) == size for row in written.args):
@@ -327,7 +353,10 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield a product with a square root over its numbers, and one with a square root over its other factors."""
+    """Yield the edits that put a square root over the numbers of a product, or over its other factors.
+
+    For ``2*g*h`` these are ``g*h*sqrt(2)`` and ``2*sqrt(g*h)``; a product with a matrix has none.
+    """
     if any(map(matrices, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
@@ -340,13 +369,16 @@ def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a factor is a rational number, or the inverse of one, whose square root is rational."""
+    """Return whether a factor is a rational number with a rational square root, such as 4/9, or the inverse of one."""
     value = (node.args[0] if node.kind == "inv" else node).value
     return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
 
 
 def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield a product in which two vectors, or two easily confused letters, have exchanged places."""
+    """Yield the edits of a product that exchange two vectors, or two letters that people easily confuse.
+
+    In ``m*sin(phi)*cos(theta)`` the angles phi and theta exchange their places.
+    """
     names = list(dict.fromkeys(part for _, part in walk(node) if part.kind == "name" and part.value != "pi"))
     if len(names) > MOST_NAMES_EXCHANGED or all(part.kind == "name" for part in node.args):
         return
@@ -358,7 +390,7 @@ def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Itera
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
-    """Yield a product with ``b/a`` in place of a quotient ``a/b``."""
+    """Yield the edits that invert a quotient of two letters in a product: ``b/a*c`` for the factors of ``a/b*c``."""
     for below, divisor in enumerate(factors):
         if divisor.kind != "inv" or divisor.args[0].kind != "name":
             continue
@@ -370,7 +402,10 @@ def _of_quotients(factors: list[Node]) -> Iterator[Change]:
 
 
 def _of_sequence(factors: list[Node]) -> Iterator[Change]:
-    """Yield a product of elementary rotations with its factors in reverse order, and with other axes."""
+    """Yield edits of a product of elementary rotations: its factors in reverse order, and rotations about other axes.
+
+    For ``Rz(a)*Rx(b)`` these are ``Rx(b)*Rz(a)``, ``Ry(a)*Rx(b)`` and so on.
+    """
     yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
@@ -386,7 +421,7 @@ def _of_sequence(factors: list[Node]) -> Iterator[Change]:
 
 
 def _spelled_like(rotation: str) -> tuple[str, ...]:
-    """Return the names of the rotations about the three axes, spelled like ``rotation``: ``Rx`` or ``R_x``."""
+    """Return the names of the rotations about x, y and z in the spelling of ``rotation``: Rx, Ry and Rz for ``Rz``."""
     return tuple(rotation[:-1] + axis for axis in "xyz")
 
 
@@ -429,7 +464,10 @@ def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Calla
 
 
 def _of_quaternion(node: Node) -> Iterator[Change]:
-    """Yield a quaternion with its scalar component moved to the other end, and its conjugate."""
+    """Yield edits of a quaternion that is written as four components.
+
+    They move its first component to the end, or its last one to the front (two orders of storage), or conjugate it.
+    """
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
@@ -441,7 +479,11 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield edits that change all occurrences of an angle, of a matrix's name, or of the products of inertia."""
+    """Yield edits that change something wherever it occurs in a tree.
+
+    They halve or double an angle that occurs several times, exchange its sines and cosines, transpose a matrix that
+    occurs several times, or change the signs of all products of inertia.
+    """
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
     arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
@@ -472,7 +514,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
     """Return a tree with ``new`` in place of each ``old``.
 
-    With ``inside``, only the arguments of these functions are changed.
+    With ``inside``, names of functions such as sin, only the arguments of these functions are replaced.
     """
     if tree == old and inside is None:
         return new
@@ -484,7 +526,10 @@ def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | Non
 
 
 def _rebuilt(node: Node) -> Node:
-    """Return a node in the form that the reader of claims builds: the signs of factors move to the front."""
+    """Return a product or negated formula in the form that the reader of claims builds: ``-(a*b)`` for ``a*(-b)``.
+
+    Other nodes are returned unchanged.
+    """
     if node.kind == "product":
         return product(list(node.args), node.span)
     if node.kind == "neg":

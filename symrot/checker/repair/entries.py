@@ -15,7 +15,7 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs of a written-out matrix in which each wrong entry has its own edit."""
+    """Return the repairs of a side that is a written-out matrix, in which each wrong entry has its own edit."""
     candidates: list[Candidate] = []
     references = {"right": numeric.left, "left": numeric.right}
     for place in numeric.sides_to_edit:
@@ -49,9 +49,9 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives an entry its correct values at the test points, or None.
+    """Return the cheapest edit that gives the formula ``cell`` the values ``targets`` at the test points, or None.
 
-    The code of the edit is ``none`` if the entry has these values already.
+    ``cell`` is an entry of a matrix. The code of the edit is ``none`` if the entry has these values already.
     """
 
     def fits(tree: Node) -> bool:
@@ -82,7 +82,7 @@ def replacement(made: Node) -> Callable[[Node], Node]:
 
 
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
-    """Return a tree with two edits in different parts; None if one of the parts contains the other."""
+    """Return ``tree`` with both edits, made in different parts of it; None if one part contains the other."""
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:
         return None

@@ -109,7 +109,7 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited tree makes sense in its place.
+        """Return whether ``tree`` makes sense as the tree at ``place``, a side or a definition of the claim.
 
         A side must be more than a number, and a definition must use neither its own name nor a later one.
         """
@@ -120,11 +120,11 @@ class NumericFilter:
         return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
-        """Return the claim with changed trees."""
+        """Return the claim after ``changes``: each replaces one side or definition by its edited tree."""
         return self.claim.with_parts({change.place: change.edit.tree for change in changes})
 
     def text(self, changes: Sequence[Change]) -> str:
-        """Return a repair as text: the edited equation, and the edited definitions."""
+        """Return the claim after ``changes`` as text for a repair: the equation, and the edited definitions."""
         edited = self.edited(changes)
         assert edited.relation is not None
         claim = f"{text(edited.relation[1])} == {text(edited.relation[2])}"
@@ -182,7 +182,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return the names of the definitions, and the ids of the trees, whose values depend on a definition."""
+        """Return what depends on the definition of ``name``: names of definitions, and ids of trees in the claim."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):
@@ -201,7 +201,10 @@ class NumericFilter:
         return dependents
 
     def holds(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edited claim is true at the test points, and its sides have not both become zero."""
+        """Return whether the claim after ``changes`` is true at the test points.
+
+        Return False, too, if both sides have become zero there, or if the budget of evaluations is spent.
+        """
         if not self.affordable():
             return False
         for point in self.points:
@@ -230,7 +233,10 @@ class NumericFilter:
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return rounded values of both sides at a point; they are equal for a repair that is written in two ways."""
+        """Return rounded values of both sides after ``changes``, at one test point.
+
+        Two repairs with equal values are most likely the same formula, written in two ways.
+        """
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))
 
@@ -275,7 +281,10 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
 
 
 def matrix_entries(tree: Node) -> dict[int, Path]:
-    """Return the path to each entry of a written-out matrix, by the entry's number, counted row by row."""
+    """Return the path to each entry of a written-out matrix, by the entry's number, counted row by row from 0.
+
+    The result is empty for any other tree.
+    """
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":

@@ -72,7 +72,10 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
-    """Return the normal form of a formula; raise TooLarge if it is far too long to be a single term."""
+    """Return the normal form of the difference of two sides, reduced by the hypotheses; 0 if it vanishes.
+
+    Raise TooLarge if it is far too long to be a single missing term.
+    """
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
     if len(residual) > MOST_TERMS_READ or len(ring.roots) > MOST_ROOTS_READ:
@@ -81,9 +84,10 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield one repair of a side: to each wrong entry it adds the term that this entry lacks.
+    """Yield one repair of the side ``place`` of the claim: to each wrong entry it adds what this entry lacks.
 
-    Nothing is yielded if an entry lacks more than one short term.
+    ``lacking`` maps the path of each wrong entry to the exact formula that must be added there. Nothing is yielded if
+    one of these formulas is too long to be a single term, as ``a*b + c*d`` is: adding it would repair anything.
     """
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
@@ -100,7 +104,11 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
 def _inside(
     numeric: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]
 ) -> Iterator[Candidate]:
-    """Yield repairs that add one term inside a bracket of an entry: ``a (b + m)`` in place of ``a b``."""
+    """Yield repairs that add one term inside a bracket of a wrong entry: ``a*(b + m)`` in place of ``a*b``.
+
+    The entry is at the path ``cell`` of the side ``place``. ``residual`` is the exact formula that must be added to the
+    entry, ``a*m`` here; divided by the factor of the bracket, it gives the term.
+    """
     interpreter = numeric.claim.interpreter()
     tree = numeric.tree_at(place)
     whole = at(tree, cell)
@@ -120,7 +128,10 @@ def _inside(
 
 
 def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that multiply a matrix by another matrix of the claim, on the left or right."""
+    """Yield repairs that multiply a matrix in a side by a named matrix of the claim: ``R*J*R^T`` for ``R*J``.
+
+    The other matrix, or its transpose, is put on the left or right; the result is true at the test points.
+    """
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in numeric.sides_to_edit:
@@ -138,7 +149,10 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that use the name of another definition of the claim."""
+    """Yield repairs of a side that put the name of one definition in place of another one.
+
+    All make the claim true at the test points.
+    """
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
@@ -151,10 +165,10 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return a difference of two sides as one missing term: a short product without a divisor; None for any other.
+    """Return ``residual``, the difference of two sides, as the tree of one missing term, such as ``m*r**2``; else None.
 
-    A term with brackets must be much shorter than ``piece``, to which it is added, since adding the whole
-    difference of the sides would repair anything.
+    It must be short, and neither a sum nor divided by letters. If it has brackets, as ``m*(a + b)``, it must also be
+    much shorter than ``piece``, the formula to which it is added: otherwise it would repair anything.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
@@ -170,9 +184,9 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield (path, node) for the parts to which a term may be added.
+    """Yield (path, node) for the parts of a tree to which a term may be added, such as a and b in ``2*(a + b)``.
 
-    The value of the tree depends linearly on each of them.
+    They are terms of sums and factors of products: the value of the tree depends linearly on each of them.
     """
     yield path, tree
     for place, child in enumerate(tree.args if tree.kind in ("sum", "product", "neg") else ()):

@@ -26,7 +26,10 @@ Values = tuple[float, ...]
 
 
 def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield pairs of edits in different parts of a claim that make it true at the test points, the cheapest first."""
+    """Yield candidates with two of the edits ``changes``, in different parts of a claim; the cheapest pairs come first.
+
+    Each pair makes the claim true at the test points.
+    """
     try:
         sums, products = _differences(numeric, changes), _quotients(numeric, changes)
     except UndefinedValue:  # the claim itself has no value at the point
@@ -42,7 +45,11 @@ def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[
 
 
 def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
-    """Return two edits of a claim as changes to apply together; None if they change the same part."""
+    """Return two edits of a claim as changes to apply together.
+
+    Edits of different trees are two changes; edits of one tree become one change. Return None if one edit changes the
+    part that the other one changes, or a part inside it.
+    """
     if first.place != second.place:
         return first, second
     tree = merged(numeric.tree_at(first.place), first.edit, second.edit)
@@ -56,7 +63,10 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left minus right at a point, and the amount by which each single edit reduces it."""
+    """Return left minus right at the first test point, and the amount by which each single edit reduces it.
+
+    The amounts are in a dictionary, by the index of the edit in ``changes``.
+    """
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -73,7 +83,11 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left divided by right at a point, for scalar sides, and the factor by which each edit reduces it."""
+    """Return left divided by right at the first test point, and the factor by which each edit of a side reduces it.
+
+    The factors are in a dictionary, by the index of the edit in ``changes``. Both results are empty if a side is no
+    scalar, or zero.
+    """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
@@ -93,9 +107,10 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield the indices of each two edits that together have the whole effect: they make both sides equal.
+    """Yield the indices of each two edits that together make both sides equal.
 
-    ``rest`` returns the effect that remains for the second edit: the difference or the quotient.
+    ``effects`` has the whole effect that is necessary, and that of each single edit. ``rest`` returns, from the whole
+    effect and that of the first edit, the effect that remains for the second one: their difference or quotient.
     """
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)

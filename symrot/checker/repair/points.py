@@ -126,9 +126,10 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return the point with dual numbers as values, to differentiate by a variable.
+        """Return a copy of the point at which ``variable`` is a dual number with slope 1.
 
-        The variable is a symbol, ``f(t)``, or ``diff(f(t), t)``.
+        So the value of a tree at the copy also has the derivative by the variable: a symbol, ``f(t)``, or ``diff(f(t),
+        t)``.
         """
         order = 0
         inner = variable
@@ -253,7 +254,10 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return an integral over a box by Gauss-Legendre quadrature; the ranges of the outer variables come first."""
+    """Return the integral of ``integrand`` over a box at a point, by Gauss-Legendre quadrature.
+
+    Each of ``ranges`` is (variable, low, high); those of the outer variables come first.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):

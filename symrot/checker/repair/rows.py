@@ -87,7 +87,10 @@ def transposed(value: Any) -> Rows:
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix unchanged; raise UndefinedValue for a scalar, or for a matrix of another shape than ``shape``."""
+    """Return ``value`` if it is a matrix of the given shape; otherwise raise UndefinedValue.
+
+    In ``shape``, None stands for any number of rows or columns.
+    """
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
         raise UndefinedValue("expected a matrix of the shape that the function needs, got another value")
@@ -155,7 +158,7 @@ def rotation_of_quaternion(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return whether two values agree to double precision, for each entry; None if their shapes differ."""
+    """Return, for each entry, whether two values agree to double precision; return None if their shapes differ."""
     lefts, rights = entries_of(left), entries_of(right)
     if shape_of(left) != shape_of(right):
         if not is_matrix(left) and lefts == [0.0]:

@@ -57,7 +57,10 @@ class Entry:
 
 
 class Vocabulary:
-    """Short products of a claim's symbols, functions, sines, cosines and brackets, and its terms, sorted by value."""
+    """Short formulas from which repairs are built, sorted by their values at the test points.
+
+    They are products of a claim's symbols, functions, sines, cosines and brackets, and the products that the claim has.
+    """
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric
@@ -110,7 +113,7 @@ class Vocabulary:
         return made
 
     def values(self, node: Node) -> Values | None:
-        """Return the values of a scalar at the test points; None for a matrix, and for a scalar that is zero there."""
+        """Return the values of a scalar formula at the test points; None if one of them is zero, or for a matrix."""
         try:
             values = [point.value(node) for point in self.numeric.points]
         except UndefinedValue:
@@ -132,7 +135,10 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield the products that have these values up to a rational factor, with that factor, the shortest first."""
+        """Yield (product, ratio) for each product that has ``values`` at the test points when multiplied by ``ratio``.
+
+        ``ratio`` is a rational number. Products with the fewest factors come first.
+        """
         if not all(values):
             return
         key = self._key(values)
@@ -154,7 +160,10 @@ def _times(left: Values, right: Values) -> Values:
 
 
 def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction | None:
-    """Return the simple rational number that all values are equal to, or None."""
+    """Return the simple rational number that all ``values`` are equal to, within rounding; None if there is none.
+
+    Its denominator is at most ``largest``.
+    """
     near = Fraction(values[0]).limit_denominator(largest)
     fits = all(abs(value - near) <= 1e-3 * CLOSE * abs(near) for value in values)
     return near if fits and near and abs(near.numerator) <= LARGEST_RATIO * largest else None
@@ -191,7 +200,7 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
-    """Return whether a change makes the claim true, and makes neither a side nor a definition zero."""
+    """Return whether a change makes the claim true at the test points, without making a side or a definition zero."""
     if not numeric.sensible(change.place, change.edit.tree):
         return False
     if change.place not in SIDES:
@@ -208,9 +217,10 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
-    """Yield (path, node, whether it is a term of a sum) for each part that may be replaced.
+    """Yield (path, part, is_term) for each part of a tree that may be replaced; ``is_term``: it is a term of a sum.
 
-    Arguments of sines, rotations and similar functions are left out.
+    Arguments of sines, rotations and similar functions are left out. ``term`` is ``is_term`` of the tree itself, which
+    is at ``path``.
     """
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
@@ -230,7 +240,11 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that a part must have at the test points for the claim to hold; None if the search fails."""
+    """Return the values of an unknown at the test points with which the claim holds; None if the search fails.
+
+    The unknown is the node ``HOLE`` in the formula ``made``, which replaces the part at ``path`` of the tree ``place``.
+    The search starts from the values ``start``.
+    """
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -245,7 +259,10 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Solve for the unknown that makes both sides equal, by the secant method; return its value, None if that fails."""
+    """Return the value of the unknown ``HOLE`` with which both sides are equal at a point; None if the search fails.
+
+    ``change`` puts the unknown into the claim. The secant method begins at ``start``.
+    """
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value
@@ -284,8 +301,9 @@ Reading = tuple[Node, tuple[str, float]]
 def _readings(
     numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace a part, from its values and the values that it should have.
+    """Yield the formulas that may replace the part ``piece``, each with the code and the cost of this edit.
 
+    ``values`` are the values of the part at the test points, and ``needed`` those with which the claim is true.
     ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or directly below it in the tree.
     """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
@@ -326,7 +344,10 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the missing value is a multiple of a term in the part: this term is wrong, and none is missing."""
+    """Return whether the missing values ``lacking`` are a rational multiple of ``piece``, or of one of its terms.
+
+    Then this term has a wrong coefficient, and no term is missing.
+    """
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -342,7 +363,10 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
 
 
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return the cost of inserting a product; it grows with the length of the product and a number in front of it."""
+    """Return the cost of a repair that inserts ``ratio`` times the product ``entry``: ``least`` plus its size.
+
+    A longer product costs more, and so does a ``ratio`` other than 1 or -1.
+    """
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
     return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
@@ -363,7 +387,10 @@ def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Nod
 def _of_matrix(
     numeric: NumericFilter, vocabulary: Vocabulary, place: str, path: Path, piece: Node
 ) -> Iterator[Candidate]:
-    """Yield the repairs that multiply a matrix by a scalar, or add another matrix to it."""
+    """Yield repairs of the matrix ``piece``, which is at ``path`` of the tree ``place``.
+
+    They multiply it by a scalar, or add a scalar times another matrix of the claim to it.
+    """
     if piece.kind == "call" and piece.value == "Matrix" and path:
         return
     unit = (1.0,) * len(numeric.points)
@@ -384,7 +411,10 @@ def _of_matrix(
 
 
 def _matrices(numeric: NumericFilter, piece: Node) -> list[Node]:
-    """Return matrices of the shape of a part: those of the claim, their transposes, and products of two of them."""
+    """Return matrices of the same shape as ``piece``, which a repair may add to it.
+
+    They are the matrices of the claim, their transposes, and products of two of them.
+    """
     shape = _shape(numeric, piece)
     written = [node for place in numeric.places for _, node in walk(numeric.tree_at(place)) if numeric.is_matrix(node)]
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
