@@ -184,7 +184,7 @@ class Cursor(cursor.Cursor):
 
 
 def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
-    r"""Yield tokens with plus or minus in place of ``\pm`` and ``\mp``: their upper sign if ``upper``, else the lower."""
+    r"""Yield tokens with a sign in place of ``\pm`` and ``\mp``: their upper sign if ``upper``, else the lower."""
     signs = {"\\pm": "+-", "\\mp": "-+"}
     for piece in pieces:
         both = signs.get(piece.text)

@@ -230,7 +230,7 @@ class NamesPart(SumsPart):
         return node
 
     def total(self, sign: tree.Node) -> Node:
-        r"""Parse the name after a sum sign, as in ``\sum M_x``, and return its node: M_x is the total of all torques."""
+        r"""Parse the name after a sum sign, ``\sum M_x``, and return its node: M_x is the total of all torques."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
             raise self.fail("the terms of the sum, joined by +,", sign)

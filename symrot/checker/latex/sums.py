@@ -144,14 +144,14 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name without a mark, x or its rate, is a vector; the text is then parsed again from the start."""
+        """Record that a name without a mark, x or its rate, is a vector; the text is then parsed once more."""
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
             self.crossed.add(str(name))
 
     def scalar_product(self, left: Node, right: Node) -> Node:
-        """Return the product that ``\cdot`` means between vectors or tensors: ``dot(a, b)`` for two vectors.
+        """Return the product that a dot means between vectors or tensors: ``dot(a, b)`` for two vectors.
 
         For a tensor I it is the matrix product: I*b, or a.T*I.
         """
@@ -243,7 +243,7 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return ``node`` with what is raised after it: a power, transpose, conjugate, or the skew matrix of a vector."""
+        """Return ``node`` with the sign that is raised after it: a power, transpose, conjugate or skew matrix."""
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)

@@ -324,7 +324,7 @@ class PiecesPart(OpenFunctionsPart):
         return end > 0 and not {",", ";", "["} & {*inside[:end]} and cross.text == "×" and cross.tight
 
     def has_blanks(self, entry: Node) -> bool:
-        """Return whether a matrix entry has names with only blanks between them, as in ``[a b]``: perhaps two entries."""
+        """Return whether a matrix entry has names with only blanks between them: ``[a b]`` may have two entries."""
         inner = entry.args[0] if entry.kind == "neg" else entry
         pairs = pairwise(inner.args if inner.kind == "product" else ())
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]

@@ -153,10 +153,9 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers, ``node``: pure numbers if all are 0 and 1, otherwise unknown
-        ones.
+        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones.
 
-        ``rows`` are the dimensions as they are written, pure numbers.
+        ``node`` is the matrix, and ``rows`` are the dimensions of its entries if they are pure numbers.
         """
         if _is_unit(node):
             return rows
