@@ -531,13 +531,13 @@ const char *symrot_selftest_sentence(int failure)
         "library linked with -ffast-math does",
         "expected a*b + c to be rounded twice: compile with -ffp-contract=off for the bits of the C text, "
         "whose error bounds hold",
-        "expected sin right to 1 ulp: on this machine its error is larger",
-        "expected cos right to 1 ulp: on this machine its error is larger",
-        "expected atan2 right to 1 ulp: on this machine its error is larger",
+        "expected sin to have an error of at most 1 ulp: on this machine its error is larger",
+        "expected cos to have an error of at most 1 ulp: on this machine its error is larger",
+        "expected atan2 to have an error of at most 1 ulp: on this machine its error is larger",
         "expected sqrt to be rounded correctly: on this machine it is not",
-        "expected sinf right to 1 ulp: on this machine its error is larger",
-        "expected cosf right to 1 ulp: on this machine its error is larger",
-        "expected atan2f right to 1 ulp: on this machine its error is larger",
+        "expected sinf to have an error of at most 1 ulp: on this machine its error is larger",
+        "expected cosf to have an error of at most 1 ulp: on this machine its error is larger",
+        "expected atan2f to have an error of at most 1 ulp: on this machine its error is larger",
         "expected sqrtf to be rounded correctly: on this machine it is not",
     };
     const int count = (int)(sizeof sentences/sizeof sentences[0]);

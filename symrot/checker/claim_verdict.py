@@ -22,9 +22,6 @@ __all__ = ["MOST_SECONDS", "check_claim", "check_readings", "is_unfinished", "un
 
 MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
-
-
-ENDED = f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
 WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
 
 
@@ -72,7 +69,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             late = verdict_of_decision(unfinished(), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            verdict = replace(verdict, notes=(*verdict.notes, ENDED))
+            verdict = replace(verdict, notes=(*verdict.notes, _ended()))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
@@ -80,7 +77,11 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 
 def is_unfinished(verdict: Verdict) -> bool:
     """Return whether the processor time for a claim was used up before all was tried."""
-    return verdict.reason == unfinished().reason or ENDED in verdict.notes
+    return verdict.reason == unfinished().reason or _ended() in verdict.notes
+
+
+def _ended() -> str:
+    return f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
 
 
 def unfinished() -> Decision:

@@ -114,7 +114,7 @@ def test_a_function_that_errs_by_three_ulp_is_refused(tmp_path, name, real, numb
         f"    for (int i = 0; i < 3; ++i) {{ y = {step}(y, ({real})10); }}\n    return y;\n}}"
     )
     output = ran(tmp_path, fake, flags=("-O2", "-ffp-contract=off", "-fno-builtin"))
-    assert output == (number, f"expected {name} right to 1 ulp: on this machine its error is larger")
+    assert output == (number, f"expected {name} to have an error of at most 1 ulp: on this machine its error is larger")
 
 
 @needs_gcc

@@ -141,7 +141,7 @@ def test_expressions_of_sympy_are_claims_too():
     assert symrot.check(cos(2 * x), 1 - 2 * sin(x) ** 2).verdict == "true"
     assert symrot.check(Matrix([a, b]), Matrix([b, a]), assume=[Eq(a, b)]).verdict == "true"
     assert symrot.check(a, b).counterexample.values
-    with pytest.raises(InputError, match="one shape"):
+    with pytest.raises(InputError, match="of the same shape"):
         symrot.check(Matrix([a, b]), a)
 
 
@@ -159,11 +159,11 @@ REFUSED = (
     ("x/(sin(y)**2 + cos(y)**2 - 1) == 1", "zero everywhere"),
     ("inverse(Matrix([[1, 2], [2, 4]])) == eye(2)", "determinant"),
     ("sinn(x) == 0", "did you mean sin"),
-    ("acot(x) == 0", "two conventions for the inverse of cot"),
+    ("acot(x) == 0", "instead of the inverse of cot"),
     ("f(x) == 0", "'f'"),
     ("x + eye(2) == 0", "a scalar"),
     ("eye(2)*eye(3) == 0", "3 x 3"),
-    ("eye(2) == eye(3)", "one shape"),
+    ("eye(2) == eye(3)", "of the same shape"),
     ("eye(2)[2, 0] == 0", "indices"),
     ("x**1000001 == 1", "exponent"),
     ("((9**64)**64)**64 == x", "bits"),
@@ -176,7 +176,7 @@ REFUSED = (
     ("diff(x, 2*y) == 0", "differentiate"),
     ("integrate(1/x, (x, 1, 2)) == 0", "integrate"),
     ("integrate(x, (x, 0, x)) == 0", "does not occur in its limits"),
-    ("(1, 2) == 3", "one shape"),
+    ("(1, 2) == 3", "of the same shape"),
     ("eye(1000) == 0", "size"),
     ("phi(2) == 0", "'phi'"),
     ("phi(t) == phi", "phi[(]t[)]"),

@@ -155,7 +155,7 @@ def test_a_weak_torque_leaves_a_free_body():
 
 def test_the_series_of_a_weak_torque_is_the_one_derived():
     """The coefficients in C agree to 1e-31 with the recurrence proven in driven_rotation.md and with the root."""
-    step = next(s for s in derivation("driven_rotation").steps if "sum a_k h^k$ the coefficient" in s.claim)
+    step = next(s for s in derivation("driven_rotation").steps if "The coefficient of $h^k$ in" in s.claim)
     following, now, before, k, c = (Symbol(name) for name in ("a_{k+1}", "a_{k}", "a_{k-1}", "k", "c"))
     (recurrence,) = solve(step.right, following)
     a = [Rational(0), Rational(1)]  # W = 4, S_0 = 5

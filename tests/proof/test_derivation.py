@@ -99,7 +99,12 @@ def test_the_markdown_page(page):
 def test_the_latex_document(page):
     text = filled(page).latex()
     assert text.startswith(r"\documentclass") and text.endswith("\\end{document}\n")
-    assert r"With 50\% of" in text and r"\texttt{b\_c}" in text and r"\emph{Nothing}" in text and r"\&" in text
+    assert (
+        r"With 50\% of" in text
+        and r"\texttt{b\_\allowbreak{}c}" in text
+        and r"\emph{Nothing}" in text
+        and r"\&" in text
+    )
     assert text.count(r"\fitted{") == 6
     assert text.count(r"\left[") == text.count(r"\right]")
 
