@@ -158,6 +158,7 @@ def test_the_judge_accepts_a_right_verdict(claim, verdict):
     assert fault(claim, verdict, Random(1)) == ""
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("answer", ["true", "traceback", "nowhere"])
 def test_a_wrong_engine_is_caught(monkeypatch, answer):
     def wrong(claim, repair):

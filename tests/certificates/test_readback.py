@@ -56,6 +56,7 @@ def compiled(tmp_path_factory):
     return ctypes.CDLL(str(library))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("path", KERNELS[::4], ids=lambda path: path.stem)
 def test_what_is_read_is_what_the_compiler_makes_of_it(path, compiled):
     """Without contraction, the operations and the compiled code give the same bits at random points."""

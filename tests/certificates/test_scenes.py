@@ -33,6 +33,7 @@ def _options(ranges):
     return [part for text in ranges for part in ("--box", text)]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("scene", BOXES)
 def test_no_error_is_above_its_bound(scene):
     """The formulas are polynomials, so Fractions compute the exact values at the same floating-point inputs."""

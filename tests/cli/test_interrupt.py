@@ -57,6 +57,7 @@ def left_over(folder):
 WAYS = ["group", "alone"]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("command", "to_group"),
     [

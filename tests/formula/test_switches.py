@@ -106,6 +106,7 @@ def test_friction_sticks_until_the_drive_breaks_it_loose(method, tolerance):
 
 
 @needs_compiler
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", METHODS)
 def test_friction_about_three_axes_stops_each_in_its_time(method):
     """In a spherical body, I omega_i' = -k_i sign(omega_i), each component is at rest from omega_i I/k_i on."""

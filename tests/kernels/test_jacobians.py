@@ -156,6 +156,7 @@ def _scene_program(scene: str, variables: list[str]) -> tuple[Program, list[floa
     return text._lowered.program, bind(text._lowered.parameters, text.plan.constants)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("scene", ["heavy_top_loops", "damped_disk", "gravity_gradient_satellite", "gyrostat"])
 def test_derivatives_of_rates_by_all_states_are_complex_steps(scene):
     """The derivatives of a scene's rates by its states equal Im f(y + i h)/h."""

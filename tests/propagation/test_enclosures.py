@@ -168,6 +168,7 @@ void image(int which, double c, double r, double *out)
 
 
 @needs_compiler
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:DOP853"])
 def test_a_wave_within_a_vanished_pulse_costs_no_steps(method):
     """Far from its pulse, a chirp is exp(-1e6) times a wave with an overflowing bound: logarithms keep the product."""

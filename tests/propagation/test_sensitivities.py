@@ -125,6 +125,7 @@ def rotated(values, size):
 
 
 @needs_compiler
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("content", "duration", "changes"),
     [

@@ -178,6 +178,7 @@ def test_a_legend_never_covers_the_title(width, place, panel):
         assert not axes.get_legend().get_window_extent().overlaps(title.get_window_extent())
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("scene", ["earth_wobble", "gravity_gradient_satellite", "heavy_top_loops"])
 def test_no_legend_of_a_page_covers_a_title(scene):
     with rc_context(STYLE):

@@ -50,6 +50,7 @@ console.log(JSON.stringify({agreement: model.agreement(), failure: model.motion.
 """
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", WITHIN_A_PAGE)
 def test_the_page_agrees_with_symrot(name, tmp_path):
     result = in_node(page_model(symrot.load_scene(name)), AGREEMENT, tmp_path)

@@ -88,6 +88,7 @@ def test_a_taylor_step_of_a_linear_equation_is_the_exponential_series():
 
 
 @needs_cc
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("scene", "step"), [("tumbling_prism", "rk4"), ("gyrostat", "dop853"),
                                              ("gravity_gradient_satellite", "taylor")])  # fmt: skip
 def test_the_emitted_test_passes_and_notices_a_change(scene, step, tmp_path):

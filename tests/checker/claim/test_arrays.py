@@ -96,6 +96,7 @@ def test_a_refusal_says_what_is_expected(claim, words):
         symrot.check(claim)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "condition"), [
     ("tr(R I R^T) = tr(I)", "R is a rotation"), ("(R a)·(R b) = a·b", "R is a rotation"),
     ("det(A B) = det(A)", "B is a rotation"),
