@@ -561,7 +561,7 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _root(square: Expr) -> Expr:
-    """Return the square root of a formula whose symbols are positive, such as masses and lengths."""
+    """Return the square root of ``square``, simplified as for positive symbols such as masses: a for a^2."""
     positive = {symbol: Dummy(positive=True) for symbol in square.free_symbols}
     return sqrt(square.xreplace(positive)).xreplace({new: old for old, new in positive.items()})
 

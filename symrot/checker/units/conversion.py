@@ -133,7 +133,7 @@ class UnitProduct:
 
     @property
     def factor(self) -> Node:
-        """The factor to SI units as a tree."""
+        """The exact factor from this unit to SI units as a tree: ``1/1000`` for g."""
         pi = Node("power", None, (Node("name", "pi"), number(self.power_of_pi)))
         return product([number(self.fraction), *([pi] if self.power_of_pi else [])])
 
