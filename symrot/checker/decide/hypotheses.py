@@ -216,9 +216,9 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses imply that all ``numerators`` vanish: provably, at all real points that obey them.
+        """Return whether the hypotheses imply that all ``numerators``, those of left - right, provably vanish.
 
-        ``numerators`` are those of left - right, so that the claim follows. The result is False without hypotheses.
+        Then the claim follows. The result is False without hypotheses.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
@@ -235,7 +235,7 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return a search for counterexamples like ``search``, but without points at which a divisor of the claim is zero."""
+        """Return a search for counterexamples like ``search``, but without points where a divisor of the claim is zero."""
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None

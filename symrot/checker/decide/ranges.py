@@ -424,7 +424,7 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the other conditions imply the range ``own`` of ``quantity``, cos(u), so that it is not printed.
+        """Return whether other conditions imply the range ``own`` of ``quantity``, cos(u); then the text leaves it out.
 
         A cosine is between -1 and 1. If cos(u/2) is nonzero, it is not -1; if sin(u/2) is nonzero, it is not 1. For
         other quantities the result is False.
