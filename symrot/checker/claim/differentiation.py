@@ -22,10 +22,11 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim in which letters become functions of the variable by which the text differentiates them; or None.
+    """Return a claim in which the letters that it differentiates are functions of the time t; or None.
 
-    They become functions of t, whatever the name of the variable is: a rule of differentiation does not depend on
-    this name. Return None for a claim with several variables, and for one that has both t and another variable.
+    ``diff(x, q)`` becomes ``diff(x(t), t)``: the variable becomes t, since a rule of differentiation does not depend on
+    its name. Return None for a claim without such letters, with hypotheses, with several variables, or with both t and
+    another variable.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -52,14 +53,18 @@ def as_functions(claim: Claim) -> Claim | None:
 
 
 def _letters(tree: Node) -> set[str]:
-    """Return the names of the symbols and of the functions of time in a tree."""
+    """Return the names in a tree that are symbols, x, or functions of time, f for ``f(t)``."""
     return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
 
 
 def _on_letters(
     names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
 ) -> Iterator[str]:
-    """Yield the notes which say which letters in the derivatives are functions, and which are constants."""
+    """Yield notes for the user: which letters in the ``derivatives`` are read as functions, and which as constants.
+
+    ``names`` are the functions, ``variable`` is the one by which the text differentiates, and ``defined`` are names
+    with a definition.
+    """
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
     letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
     if constants := sorted(letters - {*names, *defined, variable, "t", "pi"}):
@@ -91,7 +96,7 @@ def _plain(value: Expr) -> Expr:
 
 
 def _is_of_formula(derivative: Node) -> bool:
-    """Return whether a derivative is one of a sum, product or power that contains no further derivatives."""
+    """Return whether a derivative is that of a sum, product or power without further derivatives: ``diff(x*y, t)``."""
     inner = derivative.args[0]
     return inner.kind in ("sum", "product", "power") and not any(_is_derivative(node) for _, node in walk(inner))
 
@@ -101,7 +106,7 @@ def _is_derivative(node: Node) -> bool:
 
 
 def _with_variable(node: Node, name: str) -> Node:
-    """Return a tree with t in place of ``name``, the variable of differentiation."""
+    """Return a tree with the time t in place of the variable ``name``."""
     if node.kind == "name" and node.value == name:
         return TIME
     return Node(node.kind, node.value, tuple(_with_variable(child, name) for child in node.args), node.span)

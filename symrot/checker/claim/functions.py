@@ -39,7 +39,7 @@ ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return the evaluator of a scalar function: it evaluates a call such as ``tan(x)``.
+    """Return the evaluator of a scalar function: given the tree of a call such as ``tan(x)``, it returns its value.
 
     If the value has a denominator, ``below`` returns it, as cos(x) for tan(x); it is recorded as a divisor.
     """
@@ -65,7 +65,7 @@ def _sqrt(scope: Scope, node: Node) -> Expr:
 
 
 def _abs(scope: Scope, node: Node) -> Expr:
-    """Return the absolute value of a scalar, or the length of a column."""
+    """Return the value of ``abs(x)``: the absolute value of a scalar, or the length of a column vector."""
     value = scope.evaluate(node.args[0])
     if is_matrix(value) and value.cols == 1:
         return sympy.sqrt(value.dot(value))
@@ -79,7 +79,7 @@ def _atan2(scope: Scope, node: Node) -> Expr:
 
 
 def _arc(function: Callable[[Expr], Expr]) -> Any:
-    """Return the evaluator of asin or acos, which refuses a number outside of -1 to 1 as the argument."""
+    """Return the evaluator of asin or acos; it raises InputError if the argument is a number outside of -1 to 1."""
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
@@ -101,7 +101,7 @@ def _log(scope: Scope, node: Node) -> Expr:
 
 
 def _part(scope: Scope, node: Node) -> Expr:
-    """Evaluate ``Re(x)`` or ``Im(x)`` of a formula without the imaginary unit: the formula itself, or zero."""
+    """Return the value of ``Re(x)`` or ``Im(x)`` of a real formula x: the formula itself, or zero."""
     value = scope.scalar(node.args[0], f"as the argument of {node.value}")
     return value if node.value == "real_part" else sympy.S.Zero
 
@@ -241,9 +241,9 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return one cell as a block of the given size.
+    """Return one cell as a matrix of the given size; None if the cell has another size.
 
-    A zero fits any size; any other cell must have the size, else None.
+    A zero fits any size.
     """
     if cell == 0 and not is_matrix(cell):
         return ImmutableMatrix.zeros(height, width)
@@ -262,7 +262,7 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
-    """Return the four components of a quaternion, scalar first; a vector becomes a quaternion with scalar part zero."""
+    """Return the four components of the quaternion that a tree means, scalar first; a vector gets the scalar part 0."""
     value = scope.evaluate(node)
     if isinstance(value, tuple):
         value = _of_blocks(scope, node, value)

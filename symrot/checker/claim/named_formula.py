@@ -47,9 +47,10 @@ class NamedFormula(NamedTuple):
 
 
 def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return the name and the formula of a claim that only gives a formula a name; None for any other claim.
+    """Return the name and the formula of a claim such as ``T = m v^2/2``, which gives a formula for an undefined name.
 
-    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim.
+    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim. Return None for
+    any other claim.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -67,7 +68,7 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return both sides of a claim that differentiates a name which nothing defines; None for other claims.
+    """Return both sides of a claim that differentiates a name without a definition; None for other claims.
 
     ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
     """
@@ -86,10 +87,11 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether an equation gives a time derivative that only a law of motion can give.
+    """Return whether an equation gives a time derivative that only a law of motion can give; ``side`` contains it.
 
-    The derivative is zero, as in ``(I w)' = 0`` and ``C w_3' = 0``; or it is the derivative of a formula, and the other
-    side has a letter that this formula lacks, as alpha in ``(I w^2/2)' = I w alpha``. No such equation is an identity.
+    The derivative is zero, as in ``(I w)' = 0`` and ``C w_3' = 0``; or it is the derivative of a formula, and
+    ``other``, the other side, has a letter that this formula lacks, as alpha in ``(I w^2/2)' = I w alpha``. No such
+    equation is an identity.
     """
     derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
@@ -108,7 +110,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a tree is a derivative with respect to time of a formula that contains a function of time."""
+    """Return whether a ``derivative`` is by time, and its formula contains a function of time: ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
@@ -116,9 +118,9 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return a quantity and the formula for it, if a claim is no identity but may hold by the meaning of its letters.
+    """Return a quantity and its formula if a claim is no identity, but may hold by the meaning of its letters.
 
-    Return None for any other claim.
+    ``k^2 = I/m`` gives k, and ``m*a == m*g - T`` relates several quantities. Return None for any other claim.
     """
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
@@ -180,9 +182,9 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Solve an equation for a vector that is one of its terms and occurs only once.
+    """Solve an equation for a vector that is one of its terms and occurs only once; return it and its formula.
 
-    Return the vector and its formula.
+    From ``v = w x r + u`` follows the formula of v. Return None without such a vector.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
@@ -196,7 +198,10 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether an equation restricts letters by a number, as q0^2 + q1^2 + q2^2 + q3^2 = 1 and T/U = 2 do."""
+    """Return whether an equation restricts letters by a number, as q0^2 + q1^2 + q2^2 + q3^2 = 1 and T/U = 2 do.
+
+    ``letters`` are the quantities on its left and on its right side.
+    """
     polynomial, constant = (left, right) if letters[0] else (right, left)
     if polynomial.kind == "product" and not _quantities(constant) and constant != number(0):
         factors = [factor.args[0] if factor.kind == "inv" else factor for factor in polynomial.args]
@@ -212,7 +217,8 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
     """Return the quantities on each side of an equation whose left side is defined on an earlier line.
 
-    In ``F == k*x`` after ``F = m*a``, these are m and a on the left, and k and x on the right.
+    In ``F == k*x`` after ``F = m*a``, these are m and a on the left, and k and x on the right. Both sets are empty if
+    the left side is not defined.
     """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
@@ -231,7 +237,8 @@ def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tu
 def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
     """Return whether each side has a quantity that the other side lacks, as ``m*a == m*g - T`` has.
 
-    Such an equation determines its quantities; it is not meant as an identity.
+    ``letters`` are the quantities on the left and on the right. Such an equation determines its quantities; it is not
+    meant as an identity.
     """
     left, right = letters
     return bool(left - right) and bool(right - left)
@@ -270,7 +277,10 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation restricts the only matrix in it: ``R.T*R == eye(3)`` or ``det(R) == 1``."""
+    """Return whether an equation restricts the only matrix in it: ``R.T*R == eye(3)`` or ``det(R) == 1``.
+
+    ``generic`` are the names of vectors and matrices without a definition.
+    """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
@@ -280,7 +290,10 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether a relation of vectors defines an angle, its only scalar: ``a . b = |a| |b| cos(theta)``."""
+    """Return whether an equation defines the angle between vectors, its only scalar: ``a . b = |a| |b| cos(theta)``.
+
+    ``generic`` are the names of vectors without a definition.
+    """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
@@ -291,7 +304,10 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether a side contains the derivative, by a quantity other than time, of a name without a definition."""
+    """Return whether a side has the derivative of a name that is not in ``known``, by another quantity than time.
+
+    ``known`` are the names with a definition; an example is ``diff(L, q)``.
+    """
     for side in (left, right):
         for _, node in walk(side):
             if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
@@ -310,14 +326,14 @@ def _is_list_of_names(tree: Node) -> bool:
 
 
 def _factors(tree: Node) -> list[Node]:
-    """Return the factors of a product, or of every term of a sum, without their exponents and signs."""
+    """Return the factors of a product, or of every term of a sum, without exponents and signs: a, b for ``-a^2*b``."""
     if tree.kind in ("sum", "product", "neg"):
         return [factor for part in tree.args for factor in _factors(part)]
     return _factors(tree.args[0]) if tree.kind == "power" else [tree]
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that are already defined: pi, the time t, and the names that the claim defines.
+    """Return the names that mean something already: pi, the time t, and the names that the claim defines.
 
     A vector whose definition only lists its components is not one of them.
     """
@@ -329,7 +345,7 @@ def _is_name(tree: Node) -> bool:
 
 
 def _is_rate(tree: Node) -> bool:
-    """Return whether a tree is a derivative of a name with respect to time."""
+    """Return whether a tree is a time derivative of a name or of a function of time, such as ``diff(x(t), t)``."""
     times = [argument.value for argument in tree.args[1:]]
     return tree.kind == "call" and tree.value == "diff" and _is_name(tree.args[0]) and {*times} == {"t"}
 
@@ -349,7 +365,10 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity of a side, such as k in 2*k^2, and a function that solves for it; None without one."""
+    """Return the only quantity of one side of an equation, and a function that solves for it; None without one.
+
+    For the side 2*k^2 the quantity is k, and the function turns the other side, I, into (I/2)^(1/2).
+    """
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
         if side.kind == "neg":
@@ -395,7 +414,7 @@ def _called(function: str, tree: Node) -> Node:
 
 
 def _after(steps: Sequence[Solve], tree: Node) -> Node:
-    """Return the tree after all ``steps``, functions of a tree that are applied in order."""
+    """Return the result of applying ``steps`` to a tree, one after the other; each step returns a changed tree."""
     return reduce(lambda made, step: step(made), steps, tree)
 
 
@@ -410,9 +429,10 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Solve a linear differential equation for its highest derivative; None if the claim is no such equation.
+    """Return the highest derivative of a linear differential equation, and the formula to which it is equal.
 
-    An equation with the derivative of a product, sum or function may be a rule of differentiation: None for it too.
+    Return None for any other equation, and for one with the derivative of a product, sum or function, which may be a
+    rule of differentiation.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if node.kind == "call" and node.value == "diff"}

@@ -60,7 +60,10 @@ class TypedNotation:
         return plain.replace("real_part(", "Re(").replace("imaginary_part(", "Im(")
 
     def _spelled(self, node: Node, parent: str = "") -> Node:
-        """Return a tree with names as the user typed them, primes for rates, and ``[..]`` for matrices."""
+        """Return a tree with names as the user typed them, primes for rates, and ``[..]`` for matrices.
+
+        ``parent`` is the kind of the node above the tree; empty for a whole formula.
+        """
         if node.kind == "call" and node.value == "diff":
             name = str(node.args[0].value)
             if name not in self.timed or not _is_rate(node):

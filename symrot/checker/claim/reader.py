@@ -238,7 +238,11 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words to split into names (``mgl`` into m, g, l), notes about them, and the ambiguous words."""
+        """Return the words of the text that are split into names, notes about them, and those that are ambiguous.
+
+        Each word is mapped to its names, ``mgl`` to m, g, l. ``alone`` are names that occur by themselves, ``vectors``
+        are not split, and ``flips`` are the keys of ambiguous words that get their less usual meaning.
+        """
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
@@ -294,7 +298,9 @@ class _Text:
     ) -> list[Token]:
         """Return tokens in which cos(θ) and sin(θ) replace the short forms cθ and sθ.
 
-        They are short forms only if the text has both, and if neither c nor s occurs alone.
+        Usually they are short forms if the text has both, and if neither c nor s occurs alone; in the less usual
+        reading, which ``flips`` asks for, it is the reverse. Notes and ambiguous places are added to ``notes`` and
+        ``doubts``.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
@@ -317,9 +323,10 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp``, an ω with the index p, is one name where it is the left side of an equation.
+        """Return tokens in which ``ωp`` is the name omega_p where it is the left side of an equation.
 
-        Anywhere else ``ωp`` is the product of ω and p.
+        Anywhere else ``ωp`` is the product of ω and p. Ambiguous places are added to ``doubts``; ``flips`` are the keys
+        of those that get their less usual meaning.
         """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
@@ -368,7 +375,10 @@ class _Text:
 
     @staticmethod
     def is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether a token is a comma between two equations on one line."""
+        """Return whether ``token`` is a comma between two equations on one line, as in ``a = b, c = d``.
+
+        ``line`` are the tokens of the line before it, ``tokens`` those of the whole text.
+        """
         if token.text != "," or not any(piece.text in SIGNS for piece in line):
             return False
         after = tokens[list(tokens).index(token) + 1 :]
@@ -376,7 +386,11 @@ class _Text:
         return any(piece.text in SIGNS for piece in after[:end])
 
     def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether a token after a line break starts another equation, and does not continue the line before."""
+        """Return whether ``token``, which follows a line break, starts another equation.
+
+        If not, it continues ``line``, the tokens before it, as a leading + does. ``tokens`` are those of the whole
+        text.
+        """
         if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", "⊗", *SIGNS) or token.kind == "end":
             return False
         if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", "⊗", ")", "]", ","):
@@ -391,17 +405,14 @@ class _Text:
 
     @staticmethod
     def ended(line: list[Token]) -> list[Token]:
-        """Return the tokens of a line with an end token in place of a comma or full stop at its end."""
+        """Return the tokens of a line without commas and full stops at its end, and with an end token."""
         while len(line) > 1 and line[-1].kind == "mark" and line[-1].text in (",", "."):
             line = line[:-1]
         return [*line, Token("end", "", line[-1].end, line[-1].end)]
 
 
 def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
-    """Yield the tokens of a line.
-
-    For a line with ± or ∓, yield them with the upper signs and then with the lower signs.
-    """
+    """Yield the tokens of a line; for a line with ± or ∓, first with the upper signs, then with the lower signs."""
     if not any(sign in token.text for token in line for sign in "±∓"):
         yield line
         return
@@ -416,7 +427,10 @@ def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
 
 
 def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
-    """Yield the names that no bracket follows. A letter x that is the sign of a cross product is no name."""
+    """Yield the names in a text that no bracket follows, so that they are no functions with arguments.
+
+    A letter x that is the sign of a cross product is left out. ``vectors`` are the names of vectors.
+    """
     padded = [*tokens, tokens[-1]]
     for before, token, after, last in zip((None, *tokens), tokens, tokens[1:], padded[2:], strict=False):
         own = last if is_mass_before_vector(after, last) else after
@@ -425,14 +439,22 @@ def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
-    """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
+    """Return whether ``token`` is a letter x that is the sign of a cross product, as in ``r x m v``.
+
+    It has blanks around it, and is between the names of vectors: ``before``, and ``factor`` after it. ``after`` is the
+    next token, which may be the mass m.
+    """
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
     return is_cross_letter(before, factor, vectors)
 
 
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names on the left and on the right of the sign of a cross product; they are vectors."""
+    """Yield the names before and after the signs of cross products, ``×`` or x; these names are vectors.
+
+    ``vectors`` are names that are already known to be vectors. ``flips`` are the keys of ambiguous places with their
+    less usual meaning, in which x is a name.
+    """
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
@@ -450,7 +472,10 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
 
 
 def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
-    """Return tokens without the sum signs of totals such as ``ΣM_x`` and ``sum F``, and a note on each such total."""
+    """Return tokens without the sum signs of totals such as ``ΣM_x`` and ``sum F``, and a note on each.
+
+    The total of all torques is one quantity, named M_x.
+    """
     others, notes = [], []
     for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
         is_sum = token.kind == "sum" or (token.kind, token.text) == ("name", "sum")
@@ -522,7 +547,8 @@ def _listed(words: Sequence[str]) -> str:
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
     """Return the final tree: functions of time become ``f(t)``, tables of numbers become matrices.
 
-    A vector stays without ``(t)``, and its square becomes a scalar product.
+    ``timed`` are the names of functions of time. A name in ``vectors`` stays without ``(t)``, and its square becomes a
+    scalar product. ``parent`` is the kind of the node above.
     """
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
@@ -596,7 +622,10 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings of a text that is not SymPy syntax: the usual one first."""
+    """Yield the readings of a text that is not SymPy syntax: the usual one first.
+
+    A text that cannot be read has none; if ``required``, InputError is raised for it.
+    """
     try:
         yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
     except InputError:
@@ -605,10 +634,10 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the readings of a text: the usual one first, then those with other meanings of its ambiguous places.
+    """Yield the readings of a text: the usual one first, then those with other meanings of ambiguous places.
 
-    ``read`` parses the text; its argument lists the keys of the ambiguous places that take their less usual
-    meaning.
+    ``read`` parses the text; its argument lists the keys of the ambiguous places that take their less usual meaning.
+    Ambiguous places of one kind take it together, since a writer is consistent; most kinds also take it one by one.
     """
     usual = read(())
     yield usual
@@ -639,9 +668,9 @@ def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
 
 
 def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
-    """Return the reading of a text that has only one; raise InputError for an ambiguous text.
+    """Return the usual reading of a text if it is the only one; raise InputError for an ambiguous text.
 
-    With ``rates``, a prime after a name always means its rate.
+    With ``rates``, a prime after a name always means its rate and makes no text ambiguous.
     """
     usual = readings[0]
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
@@ -716,9 +745,9 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Parse a text as SymPy syntax; return its reading (interpretation) and an error, one of which is None, or both.
+    """Parse a text as SymPy syntax; return its reading (interpretation) or None, and the error or None.
 
-    (None, error): the text has no meaning in SymPy syntax. (None, None): it can be parsed, but uses other notation too.
+    Both are None for a text that can be parsed, but that has other notation than SymPy syntax, such as ``2x``.
     """
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)

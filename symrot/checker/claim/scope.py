@@ -69,9 +69,9 @@ class Scope(ABC):
 
     @property
     def assumed_bases(self) -> tuple[Expr, ...]:
-        """The bases of powers that are assumed to be positive, since nothing else in the text implies it.
+        """The bases of powers that are assumed to be positive, since nothing else in the claim's text implies it.
 
-        A logarithm of the base, for example, would imply it.
+        A logarithm of a base, for example, would imply that it is positive.
         """
         powers = Counter(self.bases)
         radicands = Counter(self.radicands)
@@ -92,9 +92,10 @@ class Scope(ABC):
         return value
 
     def argument(self, node: Node, of: str) -> Expr:
-        """Return the scalar value of a function's argument; raise InputError if its functions are nested too deeply.
+        """Return the value of ``node``, the argument of a function; raise InputError if it is no scalar.
 
-        ``of`` are words for the error message, such as "as the argument of sin".
+        Functions that are nested too deeply are refused, too. ``of`` are words for the error message, such as "as the
+        argument of sin".
         """
         value = self.scalar(node, of)
         self.within_nesting(value, node)
@@ -151,7 +152,7 @@ class Scope(ABC):
             raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record a formula under an even root; raise InputError for a negative number."""
+        """Record ``value`` as a formula under an even root; raise InputError if it is a negative number."""
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):
             raise self.fail(node, "a number that is not negative under a root")

@@ -85,14 +85,20 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 
 
 def _is_name_of(name: Node, matrix: Node) -> bool:
-    """Return whether one side is the name of a unit matrix, such as I, and the other a matrix that contains letters."""
+    """Return whether ``name`` is I or another name of a unit matrix, and ``matrix`` a list of entries with letters.
+
+    Both are sides of an equation, which then defines a matrix that is called I.
+    """
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
     letters = [node for _, node in walk(matrix) if node.kind == "name"]
     return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names of unknown shape that are terms in a sum of vectors or matrices, with the shape of the sum."""
+    """Return names that must be vectors or matrices, since they are added to one, each with the shape of the sum.
+
+    In ``a + cross(w, r)`` this is a. ``shapes`` are those of the names whose shape is known.
+    """
     added: dict[str, Shape] = {}
     for side in relation[1:]:
         for _, node in walk(side):
@@ -106,7 +112,10 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names of unknown shape in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)``, as names of vectors."""
+    """Return the names in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)`` whose shape is not in ``shapes``.
+
+    They must be vectors: each is mapped to the shape (3, 1).
+    """
     calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
     names = [argument for call in calls if call.kind == "call" for argument in call.args
              if argument.kind == "name" and len(call.args) < 3]  # fmt: skip
@@ -114,7 +123,11 @@ def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape])
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be column vectors: w in ``q' = (1 + [q] + q q^T) w``, since q is a vector."""
+    """Return names that must be column vectors, since a matrix times the name is a vector; with the shape (3, 1).
+
+    In ``q' = (1 + [q] + q q^T) w`` this is w, since q is a vector. ``shapes`` are those of the names whose shape is
+    known.
+    """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""
@@ -139,7 +152,10 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return a formula with the unit matrix in place of its factor I or 1; None if it has no such factor."""
+    """Return a term such as ``cos(a)*I`` with the unit matrix ``eye(3)`` in place of I or 1; None without I or 1.
+
+    ``shape`` is that of the sum to which the term belongs.
+    """
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

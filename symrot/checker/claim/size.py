@@ -41,7 +41,7 @@ takes seconds, at depth 25 minutes."""
 
 
 def nesting(formula: Expr) -> int:
-    """Return the depth of a formula: how many functions and fractional powers are nested in each other."""
+    """Return how deeply functions and roots are nested in a formula: 2 for ``sin(sqrt(x))``."""
     depths: dict[Any, int] = {}
 
     def depth(node: Any) -> int:
@@ -54,10 +54,7 @@ def nesting(formula: Expr) -> int:
 
 
 def products_of_determinant(matrix: Any) -> int:
-    """Return how many products without a zero factor the expansion of a determinant has.
-
-    The count goes row by row; ``ways`` maps each set of used columns, as bits, to the number of products so far.
-    """
+    """Return the number of nonzero products in the expansion of a determinant: 2 for a full 2 x 2 matrix."""
     ways = {0: 1}
     for row in range(matrix.rows):
         after: dict[int, int] = {}
@@ -71,7 +68,7 @@ def products_of_determinant(matrix: Any) -> int:
 
 
 def terms_of_angle(angle: Expr) -> int:
-    """Estimate how many terms the sine of an angle has when it is expanded: two for the angle a + b."""
+    """Return about how many terms the expanded sine of an angle has: 2 for a + b, since sin(a + b) has two."""
     terms, number = 1, 0
     for term in angle.as_ordered_terms() if angle.is_Add else [angle]:
         multiple, atom = term.as_coeff_Mul()

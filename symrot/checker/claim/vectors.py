@@ -83,12 +83,15 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def is_tensor(name: str) -> bool:
-    """Return whether a name in bold is that of an inertia tensor, not of a vector."""
+    """Return whether a name in bold, such as I or J, is usually that of an inertia tensor, not of a vector."""
     return TENSOR.fullmatch(name) is not None
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether a name's definition only lists its components, such as ``R_11``, without giving them values."""
+    """Return whether the definition ``tree`` of a vector or matrix gives its components no values.
+
+    It then only lists their names: ``Matrix([a_x, a_y, a_z])`` for a, ``R_11, R_12, ..`` for R.
+    """
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]
@@ -99,9 +102,9 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without marks, and the names that had marks, each with whether it had a hat.
+    """Return the sides of a claim with names free of marks, and whether each name that had a mark has a hat.
 
-    Where the name of a vector has no mark, it means the length of the vector.
+    Where the name of a vector has no mark, it means the length of the vector and becomes ``sqrt(dot(a, a))``.
 
     Parameters
     ----------
@@ -148,7 +151,10 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the ends of the names of a vector's components: "123" if the text has such names, usually "xyz"."""
+    """Return the endings of the names of a vector's components: "123" if ``used`` has such names, usually "xyz".
+
+    ``used`` are the names in the claim.
+    """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
         return "0123" if "0" in numbers else "1234"
@@ -185,7 +191,10 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
 
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
-    """Return the names that are a whole side of the claim and occur nowhere else in it."""
+    """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``.
+
+    There are none if a side is a number other than zero.
+    """
     everywhere = [node.value for side in sides for _, node in walk(side) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
     alone = [side for side in sides if side.kind == "name" and not is_number]

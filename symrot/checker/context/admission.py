@@ -197,8 +197,8 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
     """Return whether the letters of a claim can mean the symbols of a derived formula, by the words of the context.
 
     ``name`` is the name of the formula, and ``mapping`` the letter for each symbol that is renamed; any other of the
-    claim's ``letters`` means the symbol of the same name. Not admitted is, for example, theta for a radius if the
-    context says that theta is an angle.
+    claim's ``letters`` means the symbol of the same name. A letter r, for example, cannot mean the symbol theta if the
+    context says that r is a radius.
     """
     sequence = sequence_of(name)
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]

@@ -224,7 +224,7 @@ _ALONG = re.compile(
 
 
 def bodies_of_formula(name: str) -> set[str]:
-    """Return the bodies that the ``name`` of a derived formula mentions, as phrases: {"thin rod"}, or an empty set."""
+    """Return the bodies that the ``name`` of a derived formula mentions, as phrases such as "a hollow cylinder"."""
     phrases: set[str] = set()
     rest = re.sub(r"\ban\b", "a", name)
     for phrase in _FORMULA_PHRASES:

@@ -42,7 +42,7 @@ class CalculusPart(NamesPart):
         return node if power is None else Node("power", None, (node, power))
 
     def spelled(self, font: tree.Font) -> Node:
-        r"""Read a word in upright letters; return a function with its argument, ``\mathrm{sin}^2 x``, or a name."""
+        r"""Parse a word in upright letters; return a name, or a function with its argument, ``\mathrm{sin}^2 x``."""
         letters = font.inside.items if isinstance(font.inside, tree.Row) else (font.inside,)
         command = f"\\{''.join(letter.text for letter in letters)}"
         return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
@@ -69,7 +69,11 @@ class CalculusPart(NamesPart):
         return (negated(argument) if negative else argument), power
 
     def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
-        r"""Parse and return the factors after the first one in an argument without brackets: t in ``\sin\omega t``."""
+        r"""Parse and return the factors after the first one in an argument without brackets: t in ``\sin\omega t``.
+
+        ``function`` is the name of the function. If ``required``, at least one more factor is parsed. ``expected`` are
+        words for the error message about an ambiguous text.
+        """
         factors = [self.factor()] if required else []
         first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
@@ -156,7 +160,7 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        r"""Parse the numerator ``d^n X`` of a derivative; return the order n and the tree of X.
+        r"""Parse ``d^n X``, the numerator of a derivative; return its order n, and the tree of the quantity X.
 
         X is None if it follows the fraction, as in ``\frac{d}{dt} X``.
         """

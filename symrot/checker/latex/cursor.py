@@ -101,7 +101,7 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """A position in a formula, with what was learnt before it: functions of time, vectors, ambiguous places."""
+    """A position in a formula, with what the text before it has shown: functions of time, vectors, ambiguous places."""
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
@@ -157,7 +157,9 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous place of the text; return whether this reading gives it its less usual meaning.
+        """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
+
+        ``kind`` is the kind of ambiguity. The place starts at ``item`` and ends at the position ``stop``.
 
         Raises
         ------
@@ -182,7 +184,7 @@ class Cursor(cursor.Cursor):
 
 
 def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
-    r"""Yield tokens with the upper or the lower sign in place of ``\pm`` and ``\mp``."""
+    r"""Yield tokens with a sign in place of ``\pm`` and ``\mp``: their upper sign if ``upper``, else the lower."""
     signs = {"\\pm": "+-", "\\mp": "-+"}
     for piece in pieces:
         both = signs.get(piece.text)

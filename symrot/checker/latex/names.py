@@ -114,7 +114,10 @@ class NamesPart(SumsPart):
         return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
-        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t."""
+        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t.
+
+        In the less usual reading, Delta is a factor; then return the node of Delta alone.
+        """
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
         if self.flips is None:
@@ -127,7 +130,7 @@ class NamesPart(SumsPart):
         return Node("name", f"{name}_{quantity.value}")
 
     def end_of_next(self) -> int:
-        """Return the position where the next item ends, as the end of an excerpt in a note."""
+        """Return the position in the text at which the next item ends, where the excerpt in a message may end."""
         return max(self.peek(1).start, self.peek().start + 1)
 
     def refuse_call(self) -> None:
@@ -137,7 +140,7 @@ class NamesPart(SumsPart):
             raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
 
     def subscript(self, mark: tree.Script) -> str:
-        """Return the content of a subscript as text."""
+        """Return the content of a subscript as text: "1x" for ``_{1x}``."""
         inside = mark.inside
         if inside.kind == "number" and self.is_cut(inside):
             raise self.fail("braces around a subscript of several digits", inside)
@@ -170,7 +173,10 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript in the form that is declared, ``I_1`` or ``I1``; if neither is, ``I_1``."""
+        """Return a name with its subscript as it is declared, ``I_1`` or ``I1``; if neither is declared, ``I_1``.
+
+        ``others`` are further names that count if they are declared.
+        """
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
@@ -178,7 +184,11 @@ class NamesPart(SumsPart):
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return the time derivative of a formula; if it is an undeclared name, the name becomes a function of time."""
+        """Return the time derivative of a formula; ``times`` is its order.
+
+        An undeclared name becomes a function of time. If the claim declares a symbol such as dx for the derivative of
+        x, that symbol is returned.
+        """
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
@@ -193,7 +203,7 @@ class NamesPart(SumsPart):
         return node
 
     def take_time_call(self, name: str) -> None:
-        """Skip ``(t)`` after a function of time; refuse brackets with any other argument."""
+        """Skip ``(t)`` after the function of time ``name``; raise InputError for brackets with another argument."""
         if self.called_with_time() and (
             name in self.names.functions or (self.names.implied and name not in self.names)
         ):
@@ -220,7 +230,7 @@ class NamesPart(SumsPart):
         return node
 
     def total(self, sign: tree.Node) -> Node:
-        r"""Parse ``\sum M_x``, the total of all torques or forces, and return the node of the name M_x."""
+        r"""Parse the name after a sum sign, ``\sum M_x``, and return its node: M_x is the total of all torques."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
             raise self.fail("the terms of the sum, joined by +,", sign)
@@ -228,7 +238,10 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record a name as a vector or tensor that needs names for its components; return its node, ending in MARK."""
+        """Record that a name is a vector or tensor, which needs names for its components; return its node.
+
+        The name in the node ends with MARK.
+        """
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         marked = name + MARK
@@ -254,7 +267,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse what is under a mark as if the subscript and primes after the mark were inside it too.
+        r"""Parse what is under a mark, such as a dot, as if the subscript and primes after the mark were inside it too.
 
         ``\dot{\mathbf{H}}_G`` is the rate of H_G. ``read`` is the method that parses the content of the mark.
         """
@@ -308,7 +321,7 @@ class NamesPart(SumsPart):
 
 
 def appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a formula by a variable; a time derivative becomes one of the next higher order."""
+    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t return ``diff(x, t, t)``."""
     if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
         return Node("call", "diff", (*node.args, variable))
     return Node("call", "diff", (node, variable))

@@ -128,8 +128,9 @@ def _read(
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
     """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
 
-    If a name without a mark turns out to be a vector only late in the text, the text is parsed again. Without
-    ``flips``, an ambiguous text is refused.
+    If a name without a mark turns out to be a vector only late in the text, the text is parsed again. ``flips`` are the
+    keys of ambiguous places with their less usual meaning; if it is None, an ambiguous text is refused. ``upper``
+    chooses the upper or lower signs.
     """
     crossed: frozenset[str] = frozenset()
     while True:
@@ -147,7 +148,10 @@ def _read(
 
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
-    """Return a note on the symbols, other than vectors, that are treated as constants in time derivatives."""
+    """Return notes for the user on the symbols, other than vectors, that time derivatives treat as constants.
+
+    ``sides`` are those of all equations of the text. There is at most one note.
+    """
     nodes = [node for side in sides for _, node in walk(side)]
     rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
     parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
@@ -232,9 +236,10 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Parse chains ``a = b = c`` up to the end; return them as lines.
+        """Parse chains ``a = b = c`` up to the end; return them as lines, one for each chain.
 
-        ``line`` is the beginning of the first chain, if that is already parsed.
+        ``between`` are the marks that may separate two chains, such as a comma. ``line`` is the beginning of the first
+        chain, if that is already parsed.
         """
         lines: list[Line] = []
         while True:
@@ -310,10 +315,10 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield the items of each line of an environment, and whether the line continues the line before it.
+    """Yield the items of each line of an environment, and whether the line only continues the one before it.
 
-    It does if it starts with a plus or minus sign and, moreover, its first cell is empty or it has no relation
-    sign. Spaces, and commas and full stops at the end of a line, are left out.
+    It does if it starts with a plus or minus sign and, moreover, its first cell is empty or it has no relation sign.
+    Spaces, and commas and full stops at the end of a line, are left out.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]
@@ -325,7 +330,10 @@ def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
 
 
 def _texts(items: Sequence[tree.Node]) -> set[str]:
-    """Return the texts of items and of all items inside them; a matrix contributes the text ``table``."""
+    """Return the texts of some items and of all items inside them; a matrix adds the text ``table``.
+
+    So the caller can look for a letter anywhere in a formula.
+    """
     texts: set[str] = set()
     for item in items:
         texts |= {item.text}

@@ -66,7 +66,11 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms that begin with a letter such as c or s, by position; none if c or s also occurs alone."""
+    """Return the short forms that begin with a letter such as c or s, by position; none if the letter occurs alone.
+
+    ``letters`` maps such a letter to its function, c to cos. None is returned unless there are both a cosine and a
+    sine.
+    """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -89,7 +93,11 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``; none if the text has too few of them."""
+    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``, with their angles, by position.
+
+    ``numbered`` has the function and the number of each. The result is empty if the text has too few of them: c_1 may
+    then be a name.
+    """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
     fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
@@ -108,7 +116,7 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
     r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``.
 
-    Beside c_2 and s_3, whose numbers are in ``digits``, such a rate shows that these are a cosine and a sine.
+    Beside c_2 and s_3, whose numbers are in ``digits``, it shows that these are a cosine and a sine.
     """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
@@ -151,7 +159,7 @@ def _is_angle(piece: Token) -> bool:
 
 
 def _subscript(pieces: Sequence[Token], place: int) -> str:
-    """Return the subscript that starts at a place, if it is one Greek letter or a number; otherwise an empty text."""
+    """Return the subscript that starts at ``place``, if it is one Greek letter or a number; otherwise an empty text."""
     grouped = pieces[place].text == "{"
     inner = pieces[place + grouped]
     if grouped and pieces[place + 2].text != "}":
@@ -160,9 +168,10 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the only Greek letter, or q, that has some of the digits as subscripts: theta for ``\theta_1``.
+    r"""Return the Greek letter of the angles that short forms such as c_1 mean: theta if the text has ``\theta_1``.
 
-    The letter is theta for a text without Greek letters, and an empty text if two letters have such subscripts.
+    It is the only letter, q included, that has some of the ``digits`` as subscripts. The result is theta for a text
+    without Greek letters, and an empty text if two letters have such subscripts.
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):

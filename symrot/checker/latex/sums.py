@@ -144,14 +144,17 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name without a mark, or the name in a rate, is a vector; the text is then parsed again."""
+        """Record that a name without a mark, x or its rate, is a vector; the text is then parsed once more."""
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
             self.crossed.add(str(name))
 
     def scalar_product(self, left: Node, right: Node) -> Node:
-        """Return the product that a dot means: of two vectors, of a vector and a tensor, or of two tensors."""
+        """Return the product that a dot means between vectors or tensors: ``dot(a, b)`` for two vectors.
+
+        For a tensor I it is the matrix product: I*b, or a.T*I.
+        """
         if self.is_row(left):
             return Node("call", "dot", (Node("transpose", None, (left,)), right))
         if not (self.is_tensor(left) or self.is_tensor(right)):
@@ -159,11 +162,11 @@ class SumsPart(Cursor):
         return product([left if self.is_tensor(left) else Node("transpose", None, (left,)), right])
 
     def is_tensor(self, node: Node) -> bool:
-        """Return whether a tree is the name of a tensor that has no definition."""
+        """Return whether a tree is the name of a tensor, which has no definition: a name in bold such as I."""
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
     def is_row(self, node: Node) -> bool:
-        """Return whether a tree is a row vector times a tensor, ``a.T*I``."""
+        """Return whether a tree is a product of a transposed vector and a tensor, ``a.T*I``, which is a row."""
         factors = node.args if node.kind == "product" else ()
         return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
@@ -192,9 +195,8 @@ class SumsPart(Cursor):
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
         """Parse the divisor after a slash: one factor, or a product such as ``2m`` in ``p^2/2m``.
 
-        Return its tree and a bool.
-
-        The bool is True if the factors after the divisor certainly do not belong to it, as m in ``1/2 m``.
+        Return its tree, and whether the factors after it certainly do not belong to it, as m in ``1/2 m``. ``factors``
+        are those before the slash.
         """
         first = self.peek()
         below = [self.factor()]
@@ -241,7 +243,7 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return a base with a raised sign as a tree: a power, transpose, conjugate or the skew matrix of a vector."""
+        """Return ``node`` with the sign that is raised after it: a power, transpose, conjugate or skew matrix."""
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)
@@ -271,7 +273,7 @@ class SumsPart(Cursor):
         return self.vector(f"{base}_star") if marked else replace(node, value=f"{base}_star")
 
     def argument(self, node: tree.Node) -> Node:
-        """Return the tree of a command's argument, which is a group in braces or one token."""
+        """Return the tree of a command's argument or of an exponent: a group in braces, or one letter or digit."""
         if isinstance(node, tree.Row):
             return self.inside(node, self.expression)
         if node.kind == "number":
@@ -283,11 +285,14 @@ class SumsPart(Cursor):
         raise self.fail("a group in braces", node)
 
     def is_cut(self, digit: tree.Node) -> bool:
-        """Return whether a digit belongs to a longer number without braces: LaTeX reads ``x^12`` as ``x^1 2``."""
+        """Return whether a digit without braces belongs to a longer number, of which LaTeX raises only the first digit.
+
+        LaTeX reads ``x^12`` as ``x^1 2``, which is hardly meant.
+        """
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Parse one factor without its exponents and return its tree."""
+        """Parse one factor without its exponents, which starts with ``item``, and return its tree."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":
@@ -342,7 +347,10 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        r"""Read ``, B`` after A in ``[A, B]`` or ``\{A, B\}`` with Pauli's matrices; return the (anti)commutator."""
+        r"""Parse ``, B`` in ``[A, B]`` or ``\{A, B\}`` with Pauli's matrices, after A; return the (anti)commutator.
+
+        ``sign`` tells which of them. Without a comma at the cursor, return ``first``, the tree of A.
+        """
         if not self.at(","):
             return first
         comma = self.next()

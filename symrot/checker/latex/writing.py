@@ -117,12 +117,12 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether dots over a letter can show a derivative: it is by time alone, and of an order that has dots."""
+    """Return whether dots over a letter can stand for a derivative: it is by time alone, and of a low order."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a formula is the scalar product of a vector with itself, whose root is written as a length."""
+    """Return whether a formula is ``dot(a, a)``, whose square root is written as the length of the vector a."""
     return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
 
 
@@ -170,7 +170,10 @@ class Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return the LaTeX of factors side by side; a divisor becomes the denominator under the factor before it."""
+        """Return the LaTeX of a product: its factors side by side, each divisor below the factor before it.
+
+        ``a/b*c`` becomes a fraction of a and b, and c after it.
+        """
         pieces: list[str] = []
         last = None
         for factor in node.args:

@@ -42,7 +42,9 @@ class Copied:
 
 
 def without_surroundings(source: str, numbers: bool = True) -> Copied:
-    """Return a text without clauses that hold no equation and, if ``numbers``, without the numbers of its equations.
+    """Return the equations of a text without the words around them and, if ``numbers``, without their numbers.
+
+    Left out are clauses that hold no equation, such as "where m is the mass".
 
     Examples
     --------
@@ -74,7 +76,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return the clauses after ``where`` with blanks for those that have no equation, and a list of the latter."""
+    """Return the text after ``where`` with blanks in place of clauses without an equation, and a list of these."""
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

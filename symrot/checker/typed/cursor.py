@@ -138,7 +138,11 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous place of the text; return whether this reading gives it its less usual meaning."""
+        """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
+
+        ``kind`` and ``at`` are the kind of the ambiguity and its position; the excerpt for messages goes from ``start``
+        to ``stop``.
+        """
         self.plain = True
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
@@ -207,7 +211,7 @@ class Cursor(ABC):
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
 
     def is_element(self) -> bool:
-        """Return whether the element of the integral, such as dm or dx, is at the cursor."""
+        """Return whether the token at the cursor is the element that ends the integral being parsed: dm or dx."""
         return self.token().text == self.element
 
     def end_of_run(self) -> int:
@@ -220,7 +224,7 @@ class Cursor(ABC):
         return len(self.source)
 
     def is_vector(self, node: Node) -> bool:
-        """Return whether a tree is a vector: a list, a cross product, or a name that the text uses as a vector."""
+        """Return whether a formula is a vector: a list, a cross product, or a name that the text uses as a vector."""
         if node.kind == "name":
             return node.value in self.vocabulary.vectors
         if node.kind == "call":
@@ -244,7 +248,7 @@ def is_usual_vector(name: str) -> bool:
 
 
 def is_mass_before_vector(token: Token, after: Token) -> bool:
-    """Return whether a token is the mass m in ``r x m v``."""
+    """Return whether ``token`` is the mass m and ``after`` is a vector, as m and v in ``r x m v``."""
     return token.text in ("m", "M") and after.kind == "name" and is_usual_vector(after.text)
 
 

@@ -24,12 +24,12 @@ BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n 
 
 
 def _is_matrix_name(node: Node) -> bool:
-    """Return whether a factor is a name that starts with a capital letter, which may be a matrix."""
+    """Return whether a tree is a name that starts with a capital letter, which may be that of a matrix."""
     return node.kind == "name" and str(node.value)[0].isupper()
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index at which the left side of a cross product starts: the R of ``R a × b``, else the last factor."""
+    """Return where in ``factors`` the left side of a cross product starts: at R for ``R a × b``, else at the last."""
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 

@@ -54,7 +54,11 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse an argument without brackets; return the call, and the exponent of the whole call or None."""
+        """Parse the argument in ``sin 2x`` and return the call sin(2*x), and the exponent of the call or None.
+
+        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent at the end of the argument also
+        counts if this reading takes ``sin x^2`` as (sin x)^2.
+        """
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -86,9 +90,9 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the exponent at the end of an argument if it belongs to the call: if ``sin x^2`` is read as (sin x)^2.
+        """Return 2 for ``sin x^2`` if this reading takes it as (sin x)^2; None if it is sin(x^2), as usual.
 
-        Usually such an exponent belongs to the argument: sin(x^2). Then return None.
+        ``factors`` are the factors of the argument so far; the exponent is removed from the last one if it is returned.
         """
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
@@ -99,7 +103,10 @@ class OpenFunctionsPart(Cursor):
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the next factor belongs to an argument without brackets, as x in ``sin 2 x`` does."""
+        """Return whether the factor at the cursor belongs to the argument of ``function``: x in ``sin 2 x`` does.
+
+        In ``sin x cos y`` cos y does not. ``factors`` are the factors of the argument so far.
+        """
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -119,7 +126,10 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether a slash after a function's argument divides the argument: whether ``sin x/2`` is sin(x/2)."""
+        """Return whether a slash after a function's argument divides the argument: ``sin x/2`` as sin(x/2).
+
+        If not, it divides the call: (sin x)/2. ``factors`` are the factors of the argument.
+        """
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False
@@ -169,7 +179,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent follows the token at the distance ``ahead`` from the cursor."""
+        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -220,7 +230,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
-        """Return the number of tokens in the bracket at the cursor if ``/dx`` follows the bracket; None otherwise."""
+        """Return how many tokens the bracket at the cursor has if ``/dx`` follows it, as in ``(x^2)/dx``; or None."""
         depth, place = 0, 0
         while self.token(place).kind != "end":
             depth += (self.token(place).text == "(") - (self.token(place).text == ")")
@@ -230,7 +240,10 @@ class OpenFunctionsPart(Cursor):
         return None
 
     def derivative_of_bracket(self, token: Token, end: int) -> Node:
-        """Parse ``(x^2)/dx`` after a d and return the derivative; the bracket at the cursor has ``end`` tokens."""
+        """Parse ``(x^2)/dx`` after a d, as in ``d(x^2)/dx``, and return the derivative.
+
+        The cursor is before the bracket, which has ``end`` tokens; ``token`` is the d.
+        """
         variable, after = self.differential(end + 1)
         length = after - end
         self.plain = True
@@ -243,7 +256,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return the order of a derivative, which is the power at a place (1 without a power), and the place after it.
+        """Return the order of a derivative, 2 if ``^2`` or ² is at ``place`` and 1 without a power, and the next place.
 
         Places are counted in tokens from the cursor.
         """

@@ -82,7 +82,11 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def component(self, node: Node) -> Node | None:
-        """Read the index after the bracket in ``(ω × r)_i`` and return the component of the cross product."""
+        """Return the component of the cross product ``node`` that the index in ``(ω × r)_i`` means; or None.
+
+        It is None if ``node`` is no cross product, or if the index means no component. The cursor then stays before the
+        index.
+        """
         index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
         made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
         self.plain = True
@@ -90,10 +94,10 @@ class PiecesPart(OpenFunctionsPart):
         return made
 
     def is_star(self) -> bool:
-        """Return whether a star marks a conjugate, as in ``q v q*``: no blank is before it, and no factor follows.
+        """Return whether the star at the cursor marks a conjugate, as in ``q v q*``, and is no product sign.
 
-        In ``q* q'`` a factor follows, but it is the same letter, after a blank: then the star marks a conjugate
-        too.
+        It does if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but it is the same
+        letter, after a blank: then the star marks a conjugate too.
         """
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
@@ -163,7 +167,10 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return the time derivative that primes or dots after a name mean, or the name ``x'`` if that is meant."""
+        """Return ``diff(x(t), t)`` for ``x'``, the time derivative that primes or dots after a name mean.
+
+        In its less usual reading, ``x'`` is the name ``x_prime``. ``node`` is the name, ``mark`` the primes or dots.
+        """
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
@@ -232,7 +239,7 @@ class PiecesPart(OpenFunctionsPart):
         return product([above, Node("inv", None, (below,), below.span)], call.span)
 
     def symbol(self, token: Token) -> Node:
-        """Parse a name that is not built in; return a symbol, or a function with its arguments in brackets."""
+        """Parse a name that is not built in; return a symbol, or the call of a function with its arguments."""
         word = token.text
         inside = [self.token(n).text for n in range(1, 3)]
         if word == "S" and self.peek() == "(" and inside[0] in self.vocabulary.vectors and inside[1] == ")":
@@ -259,9 +266,9 @@ class PiecesPart(OpenFunctionsPart):
         return is_name and not self.as_sympy and after.kind == "name" and after.spaced
 
     def is_factor(self, word: str) -> bool:
-        """Return whether a name before a bracket is a factor of a product, and not a function with arguments.
+        """Return whether the name ``word``, which is before a bracket, is a factor as in ``m(a + b)``, and no function.
 
-        It is, if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
+        It is a factor if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
         """
         if word in self.vocabulary.symbols or word in self.vocabulary.alone:
             return True
@@ -317,7 +324,7 @@ class PiecesPart(OpenFunctionsPart):
         return end > 0 and not {",", ";", "["} & {*inside[:end]} and cross.text == "×" and cross.tight
 
     def has_blanks(self, entry: Node) -> bool:
-        """Return whether a matrix entry has two names with only blanks between them, which may be two entries."""
+        """Return whether a matrix entry has names with only blanks between them: ``[a b]`` may have two entries."""
         inner = entry.args[0] if entry.kind == "neg" else entry
         pairs = pairwise(inner.args if inner.kind == "product" else ())
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]
@@ -371,7 +378,10 @@ class PiecesPart(OpenFunctionsPart):
         return Node("neg", None, (node,), node.span) if negative else node
 
     def element_ahead(self, has_limits: bool) -> str:
-        """Return the element of the integral at the cursor: dm or dV, or with limits the first name such as dx."""
+        """Return the element that ends the integral at the cursor: dm or dV, or with limits a name such as dx.
+
+        Return dm if there is none.
+        """
         depth = inner = 0
         for before, token in pairwise(self.tokens[self.index - 1 :]):
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))

@@ -137,7 +137,7 @@ def without_dots(name: str) -> str:
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
-    """Return the text in a single spelling of each sign, and the place of each of its characters in the source."""
+    """Return the text in one spelling of each sign, ``*`` for ``∗``, and the place of each character in ``source``."""
     written: list[str] = []
     places: list[int] = []
     for place, character in enumerate(source):
@@ -148,7 +148,10 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text in which dots and hats come after their letters; text copied from a PDF has them before."""
+    """Return a text in which dots and hats follow their letters, and the places of its characters in the source.
+
+    Text that was copied from a PDF has them before the letters. ``places`` are those of the characters of ``text``.
+    """
     text, places = _without_blanks_before_dots(text, places)
     characters, places = list(text), [*places]
     for at in range(len(characters) - 1):
@@ -160,7 +163,10 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
 
 
 def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text without the blank in ``ω ˙ =``, as some PDFs have it; no letter follows the dot."""
+    """Return a text without the blank in ``ω ˙ =``, and the places of its characters in the source.
+
+    Some PDFs have this blank; no letter follows the dot. ``places`` are those of the characters of ``text``.
+    """
     dots = "".join(_DOTS)
     gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]
     return (
@@ -218,7 +224,7 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield the tokens of the name after ``∂``, with d in front: ``∂T`` is read as ``dT``, and ``∂`` alone as ``d``."""
+    """Yield (kind, text, end) of the name after ``∂``, with d in front: dT for ``∂T``, and d for ``∂`` alone."""
     name = _NAME.match(text, at)
     if text[at : at + 1] in LETTERS:
         pieces = [*_pieces(text, at)]
@@ -230,7 +236,7 @@ def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield the mark ``_`` of the lower limit of an integral; lowered digits ``∫₀`` are the limit itself."""
+    """Yield (kind, text, end) of the mark ``_`` of an integral's lower limit; for ``∫₀`` also of the limit 0."""
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, at)
     yield "mark", "_", at if lowered else at + 1
     if lowered is not None:
@@ -239,7 +245,7 @@ def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
-    """Yield the tokens of a name of Latin letters.
+    """Yield (kind, text, end) of the tokens of a ``name`` of Latin letters and of the primes after it.
 
     Dots belong to its last letter only, so that ``mẍ`` has two names.
     """
@@ -275,7 +281,10 @@ def _written(digits: str) -> str:
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield the token of a single letter with its subscript, then the token of the dots over it."""
+    """Yield (kind, text, end) of a letter such as ω with its subscript, and of the dots over it.
+
+    ``word`` is the letter in ASCII, omega.
+    """
     stop = at + 1
     dots = 0
     over = ""

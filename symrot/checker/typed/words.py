@@ -129,7 +129,7 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens of the full formula cos(theta), at the places of the tokens that it replaces."""
+        """Return the tokens of cos(theta), to replace those of ``cθ`` from ``first`` to ``last`` at their places."""
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (
@@ -164,7 +164,10 @@ def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the places of a text where a cosine or sine may be abbreviated, as in ``cθ``."""
+    """Return the short forms of cosines and sines in a text, such as ``cθ`` and ``s_theta``.
+
+    Whether the text means them is decided elsewhere: c may also be a name of its own.
+    """
     short = shorthands_of_letters(tokens)
     if short:
         return short
@@ -196,7 +199,7 @@ def lost_power(word: str) -> tuple[str, ...]:
 
 
 def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) -> Iterator[Token]:
-    """Yield tokens; each word that is a key of ``words`` is replaced by the tokens of the names there."""
+    """Yield the tokens with words split into names: m, g, l for ``mgl`` if ``words`` maps mgl to these names."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
         if not pieces or token.end - token.start != len(token.text):

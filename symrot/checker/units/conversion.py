@@ -121,7 +121,7 @@ class UnitProduct:
 
     @property
     def note(self) -> str:
-        """The factor to SI units, as ``1 rpm = pi/30 rad/s``; empty for an SI unit, and for a factor that is long."""
+        """A note on the factor to SI units, as ``1 rpm = pi/30 rad/s``; empty for SI units and for long factors."""
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
@@ -153,7 +153,7 @@ class Measured:
     others: tuple[tuple[str, "Measured"], ...] = ()
 
     def restored(self, text: str) -> str:
-        """Return a text about the claim in which the units replace the names that stand for them."""
+        """Return a text about the claim with its units: ``2 kg`` for ``2*unit_1``, as ``units`` says."""
         return re.sub(
             r"(\w)?\*?(unit_\d+)", lambda match: f"{match[1] or ''} {self.units[match[2]].text}".lstrip(), text
         )
@@ -163,7 +163,7 @@ class Measured:
 class _Way:
     """One way to read a text with units.
 
-    ``meanings`` are the units with their less usual meaning; ``by_whole`` says whether ``a/2 m`` divides by ``2 m``.
+    ``meanings`` are the units that have their less usual meaning in it; if ``by_whole``, ``a/2 m`` divides by ``2 m``.
     """
 
     meanings: frozenset[str] = frozenset()
@@ -171,7 +171,7 @@ class _Way:
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with names in place of its units, or None for a text without numbers that have units.
+    """Return a text with a name such as unit_1 for each unit in it; None if no number in it has a unit.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def measured_text(source: str) -> Measured | None:
 
 
 def _plain(source: str) -> str | None:
-    """Return a text with units in which plain signs replace LaTeX commands; None if other LaTeX commands remain."""
+    """Return LaTeX of numbers with units as plain text; None if it has commands that plain signs cannot replace."""
     plain = source
     for pattern, instead in _LATEX:
         plain = re.sub(pattern, instead, plain)
@@ -217,7 +217,7 @@ def _plain(source: str) -> str | None:
 
 
 def numbers_of_latex(source: str) -> str:
-    r"""Return plain text for LaTeX that has only numbers, one of them a rounded decimal number: ``\pi = 3.14``. Or "".
+    r"""Return LaTeX as plain text if it has only numbers, one of them decimal: ``\pi = 3.14``; otherwise "".
 
     Examples
     --------
@@ -258,9 +258,9 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Split a chain of equations into its beginning with letters and its end, where all sides are numbers with units.
+    """Return the two parts of a chain of equations: its beginning, and its end of numbers with units.
 
-    Both are empty if fewer than two sides at the end are such numbers.
+    Both are empty if fewer than two sides at the end consist only of numbers with units.
 
     Examples
     --------
@@ -276,10 +276,10 @@ def numeric_end(source: str) -> tuple[str, str]:
 
 
 def unit_beside_letters(source: str) -> str:
-    """Return the first number with a unit in a text with other letters, if it is surely no product of letters; or "".
+    """Return the first number with a unit, such as "3 m/s^2", in a text with other letters; "" without one.
 
-    It is sure if the unit has several letters, or if a side is only this number with a unit such as m/s^2, and the
-    other sides have none of these letters.
+    It must surely be no product of letters. It is none if the unit has several letters, or if a side is only this
+    number with a unit such as m/s^2, and the other sides have none of these letters.
 
     Examples
     --------
@@ -306,7 +306,11 @@ def unit_beside_letters(source: str) -> str:
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text has no names but those of units, except one for the result on its left side."""
+    """Return whether a text consists of numbers with ``units``, perhaps with one name for the result on the left.
+
+    ``names`` are the names in it that are no units. ``has_long`` says that a unit has several letters: otherwise the
+    letters may be quantities, so that more is required.
+    """
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):
         return False
@@ -319,7 +323,7 @@ def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct
 
 
 def _is_plausible(unit: UnitProduct) -> bool:
-    """Return whether a product of single letters is usually a unit, such as m/s²."""
+    """Return whether a product of one-letter units, such as m/s², is a usual unit, not a product of quantities."""
     plain = unit.text
     for digits, power in _SUPERSCRIPTS.items():
         plain = plain.replace(digits, f"^{power}")
@@ -327,7 +331,7 @@ def _is_plausible(unit: UnitProduct) -> bool:
 
 
 def _pieces(text: str) -> Iterator[tuple[str, int]]:
-    """Yield the units in a product such as ``kg m^2/s``, each with its power."""
+    """Yield each unit in a product with its power: (kg, 1), (m, 2), (s, -1) for ``kg m^2/s``."""
     for match in _PIECE.finditer(text):
         mark = match["power"]
         power = _SUPERSCRIPTS[mark] if mark in _SUPERSCRIPTS else int(re.sub(r"[\^*()]", "", mark) or 1)
@@ -336,7 +340,10 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
 
 
 def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
-    """Return the product of units that a text states. Units in ``meanings`` have their less usual meaning."""
+    """Return the product of units that ``text`` states, with its exact factor to SI units.
+
+    Units in ``meanings`` have their less usual meaning: g is then the standard gravity, not the gram.
+    """
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0
     for name, power in _pieces(text):

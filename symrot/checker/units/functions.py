@@ -14,7 +14,7 @@ __all__ = ["CALLS"]
 
 
 def _of_number(inference: UnitInference, node: Node) -> Value:
-    """Return the dimension of a call such as sin(x), whose argument and value must be pure numbers."""
+    """Return the dimension of a call such as sin(x), a pure number; require that its argument is one, too."""
     for argument in node.args:
         inference.plain(
             inference.value(argument), f"the argument of {node.value}, {piece_text(argument)}, is {{0}}, not a number"
@@ -23,7 +23,7 @@ def _of_number(inference: UnitInference, node: Node) -> Value:
 
 
 def _alike(inference: UnitInference, node: Node) -> Value:
-    """Return the dimension of a call such as atan2(y, x): a pure number. Its arguments must have the same unit."""
+    """Return the dimension of a call such as atan2(y, x), a pure number; require that x and y have the same unit."""
     first, second = (inference.value(argument) for argument in node.args)
     inference.same(first, second, f"the arguments of {node.value} are {{0}} and {{1}}")
     return NOTHING
@@ -104,7 +104,7 @@ def _product_of_quaternions(inference: UnitInference, node: Node) -> Value:
 
 
 def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
-    """Return the dimensions of the components of a quaternion product.
+    """Return the dimensions of the components of a quaternion product; ``p`` and ``q`` are those of the factors.
 
     Component n is a sum of the products p[i] q[j] with i xor j = n.
     """

@@ -34,7 +34,7 @@ Rows = tuple[tuple[Any, ...], ...]
 
 
 class Unreadable(Exception):
-    """Exception for a part of a formula whose dimension cannot be told, and for matrices whose shapes do not fit."""
+    """Exception for a formula whose dimension cannot be told, such as a product of matrices that do not fit."""
 
 
 @dataclass
@@ -85,10 +85,9 @@ class UnitInference:
     # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Record the dimension of a defined name.
+        """Record the dimension of ``name`` from its definition, so that later formulas can use it.
 
-        If the definition is a bare number, its unit may have been left out: the name gets its usual or an
-        unknown unit.
+        If the definition is a bare number, its unit may have been left out: the name gets its usual or an unknown unit.
         """
         self.place = f"in the definition of {name}"
         value = self.value(tree)
@@ -130,7 +129,7 @@ class UnitInference:
         return {f"?{self.fresh}": Fraction(1)}
 
     def unit_of(self, name: str) -> Dimension:
-        """Return the unit of a symbol or function of time: stated, conventional, or unknown."""
+        """Return the unit of a symbol or function of time: the stated or conventional one, or else a new unknown."""
         if name in self.units:
             self.known = True
             return self.units[name]
@@ -154,7 +153,10 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones."""
+        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones.
+
+        ``node`` is the matrix, and ``rows`` are the dimensions of its entries if they are pure numbers.
+        """
         if _is_unit(node):
             return rows
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
@@ -162,7 +164,10 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have equal dimensions, and return them; ``words`` is the message if they differ."""
+        """Require that two values have the same dimension, and return it; if not, record a contradiction.
+
+        ``words`` is the sentence for it, in which {0} and {1} stand for the two units.
+        """
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
@@ -195,7 +200,10 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar has no unit, and return its dimension; ``words`` is the message if it has one."""
+        """Require that a scalar is a pure number, and return that dimension; if not, record a contradiction.
+
+        ``words`` is the sentence for it, in which {0} stands for the scalar's unit.
+        """
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -204,7 +212,7 @@ class UnitInference:
     # -- trees ------------------------------------------------------------------------------------------------------
 
     def value(self, node: Node) -> Value:
-        """Return the dimension of a part of a formula."""
+        """Return the dimension of a formula; for a matrix, the dimensions of its entries."""
         return _VALUE[node.kind](self, node)
 
     def scalar(self, node: Node) -> Dimension | None:
@@ -222,7 +230,10 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Require that all terms of a sum have the same dimension, and return it."""
+        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum in messages.
+
+        ``values`` are the dimensions of the terms.
+        """
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
@@ -299,13 +310,13 @@ def _minor(rows: Rows, row: int, column: int) -> Rows:
 
 
 def _bare(tree: Node) -> bool:
-    """Return whether a tree contains only numbers, no symbol."""
+    """Return whether a tree has only numbers, as ``Matrix([1, 2*pi])`` has, and no symbols."""
     loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
     return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
 
 
 def _is_unit(tree: Node) -> bool:
-    """Return whether all numbers in a tree are 0 or 1, as in a unit vector or a norm of 1."""
+    """Return whether a tree has only the numbers 0 and 1, as a unit vector or a norm of 1 has, and no names."""
     return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
         node.kind == "name" for _, node in walk(tree)
     )

@@ -72,9 +72,9 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Move hypotheses such as ``I_xy = ∫ x y dm`` into the context; return the other hypotheses and the new context.
+    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context with what they state.
 
-    Such a hypothesis says only whether products of inertia are defined with the minus sign.
+    ``assume`` are the hypotheses. One like this says only whether products of inertia are defined with the minus sign.
     """
     others = []
     for source in assume:
@@ -88,9 +88,9 @@ def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[lis
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the formula of each complex number: the one that a line such as ``z = x + i*y`` gives it.
+    """Return the formula of each complex number z: the one of a line ``z = x + i*y``, else ``Re_z + i*Im_z``.
 
-    A complex number without such a line becomes ``Re_z + i*Im_z``, with new names for its parts.
+    ``lines`` are the equations of the text, ``formulas`` all their sides.
     """
     unit = imaginary_unit(formulas)
     if unit is None:

@@ -180,14 +180,20 @@ def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return the name and the formula if a hypothesis defines a matrix, ``R == R_z(psi)*R_y(theta)``; None if not."""
+    """Return the name and the formula of a matrix if a hypothesis defines one: ``R == R_z(psi)*R_y(theta)``.
+
+    Return None for any other hypothesis. ``words`` are the names of the claim, which are not split into letters.
+    """
     sign, left, right = read_hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield definitions of matrices in hypotheses, and of their entries, which a claim may name R_31, R31 or r_31."""
+    """Yield the definitions of matrices that hypotheses give, then those of the entries that an equation names.
+
+    An entry of R may be written R_31, R31 or r_31; its definition is ``R[2, 0]``.
+    """
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
@@ -200,9 +206,10 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with unit matrices written ``eye(n)``, its vectors, and whether it has unit matrices.
+    """Return a relation with its unit matrices as ``eye(n)``, its vectors, and whether it has unit matrices.
 
-    A name that is added to a vector is a vector too. The name of an inertia that is added to a matrix is a tensor.
+    ``vectors`` are the vectors known so far. A name that is added to a vector is a vector too; the name of an inertia
+    that is added to a matrix is a tensor.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
@@ -230,7 +237,10 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Find the quaternions, matrices and columns in a relation; return their definitions and the rewritten relation."""
+    """Return the quaternions, matrices and columns in a relation, with their definitions and the changed relation.
+
+    In the changed relation, products of columns are scalar products.
+    """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}
@@ -251,7 +261,7 @@ def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence
 
 
 def _on_matrix(name: str) -> str:
-    """Return the note which says that a name is read as a matrix."""
+    """Return the note for the user that ``name`` is read as a matrix with any entries."""
     return (
         f"{name} is any 3 x 3 matrix with the entries {name}_11, {name}_12 and so on; "
         f"a rotation is stated as --given '{name} = R_z(a) R_x(b) R_z(c)'"
@@ -265,7 +275,7 @@ def _with_scalar_products(relation: Relation, names: Sequence[str]) -> Relation:
 
 
 def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
-    """Yield the notes which say which names are read as vectors and tensors."""
+    """Yield the notes for the user on the names that are read as vectors and tensors."""
     columns = [vector for vector in vectors if not is_tensor(vector.name) and not vector.is_axis]
     if columns:
         *others, last = sorted(vector.name for vector in columns)
@@ -303,7 +313,11 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis read from text. ``words`` are names of the claim, which are not split into letters."""
+    """Return the hypothesis that a text states, such as ``x > 0``, as (sign, left, right).
+
+    ``where`` is its place, for messages. ``declared`` are the names that the claim declares, if it does so; otherwise
+    ``words`` are the names of the claim, which are not split into letters.
+    """
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:
