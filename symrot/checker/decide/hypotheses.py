@@ -235,7 +235,10 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return a search for counterexamples like ``search``, but without points where a divisor of the claim is zero."""
+        """Return a search for counterexamples that also drops points at which a divisor of the claim is zero.
+
+        ``search`` is the search for points at which the sides differ.
+        """
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
