@@ -41,7 +41,7 @@ class ArrayFault(NamedTuple):
 
 
 def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
-    """Return whether a formula contains the name of a vector, matrix or quaternion, or a product of vectors."""
+    """Return whether a formula contains the name of a vector, matrix or quaternion, or a product of vectors such as ``dot``."""
     return any(
         (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
         for _, node in walk(formula)
@@ -49,7 +49,7 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the single edits of a formula with their values, sorted by the sum of the entries.
+    """Return the single edits of a formula with their values, sorted by the sum of the entries at the first test point.
 
     Of a formula without arrays, these are only the edits that add brackets.
     """
