@@ -41,7 +41,7 @@ class ArrayFault(NamedTuple):
 
 
 def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
-    """Return whether a formula has the name of a vector, matrix or quaternion, or a product of vectors as ``dot(a, b)``."""
+    """Return whether a formula has the name of a vector, matrix or quaternion, or calls an operation on vectors."""
     return any(
         (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
         for _, node in walk(formula)

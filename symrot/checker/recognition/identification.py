@@ -226,7 +226,10 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a match: the counts of changes (such as a transpose), renamed symbols, and other initials."""
+    """Return a sort key of a match: the numbers of its changes, renamed symbols, and symbols with other initials.
+
+    A change is one such as a transpose or the other sign.
+    """
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
