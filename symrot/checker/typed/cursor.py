@@ -215,7 +215,7 @@ class Cursor(ABC):
         return self.token().text == self.element
 
     def end_of_run(self) -> int:
-        """Return the position in the text where the factor at the cursor ends."""
+        """Return the position in the text at which the factor that starts at the cursor ends."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
@@ -232,7 +232,10 @@ class Cursor(ABC):
         return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
 
     def is_cross_letter(self) -> bool:
-        """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
+        """Return whether the token at the cursor is a letter x that is the sign of a cross product, as in ``a x b``.
+
+        It has blanks around it, and is between names of vectors.
+        """
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
