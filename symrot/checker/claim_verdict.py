@@ -26,7 +26,15 @@ WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, whi
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim's usual reading (interpretation), or on another reading if only that is true."""
+    """Return the verdict on a claim as it is usually read (interpreted), or on another reading if only that is true.
+
+    In the latter case a note says so. ``repair``: also search for true formulas near a claim that is not true.
+
+    Raises
+    ------
+    InputError
+        For formulas that are nested too deeply, and for those that :func:`decide_equation` refuses.
+    """
     try:
         verdict, other = check_readings(claim, repair)
     except RecursionError:
@@ -43,7 +51,8 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
     """Return the verdict on the usual reading (interpretation) of a claim, and the one on another true reading or None.
 
-    If no reading is true, the verdict has a diagnosis.
+    The second result is None if the usual reading is true, or none is. The verdict then has a diagnosis, with
+    ``repair``.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -76,7 +85,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 
 
 def is_unfinished(verdict: Verdict) -> bool:
-    """Return whether the processor time for a claim was used up before all was tried."""
+    """Return whether the processor time for a claim ended before it was decided, or before all repairs were tried."""
     return verdict.reason == unfinished().reason or _ended() in verdict.notes
 
 
@@ -109,8 +118,8 @@ def _on_name(
 ) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a claim that gives a formula for an undefined quantity; None for other claims.
 
-    The function ``formula_of`` returns the quantity and its formula. Such a claim can be recognised, but not
-    decided, so that None stands in the place of a decision.
+    An example is ``I_zz == m*r**2/2``. ``formula_of`` returns the quantity and its formula, or None. Such a claim can
+    be recognised, but not decided, so that None stands in the place of a decision.
     """
     if claim.context.sign_of_products == "plus":
         from symrot.checker import product_signs
@@ -153,7 +162,10 @@ def _on_name(
 
 
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a rule of differentiation that is decided for all functions; None for other claims."""
+    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims.
+
+    The rule is decided for all functions u(t) and v(t).
+    """
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
     decision, verdict = _decide(general)
@@ -163,7 +175,10 @@ def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _was_near_relation(claim: Claim) -> bool:
-    """Return whether :func:`_on_name` has already compared the whole equation with known relations."""
+    """Return whether :func:`_on_name` has already compared the whole equation with the relations that symrot derives.
+
+    Then :func:`_near_relation` would find nothing new.
+    """
     if claim.relation is None or claim.context:
         return False
     named = related_formula(claim)
@@ -171,7 +186,10 @@ def _was_near_relation(claim: Claim) -> bool:
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a false claim, with repairs that turn the claim into a known relation if there are any."""
+    """Return ``verdict``, on a false claim, with repairs that turn the claim into a relation that symrot derives.
+
+    If one edit gives no such relation, the verdict is returned unchanged.
+    """
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
@@ -179,7 +197,10 @@ def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict that relations between rates, momenta and energies imply; if none does, ``verdict``."""
+    """Return the verdict that follows from relations between the claim's rates, momenta and energies.
+
+    If none follows, return ``verdict``.
+    """
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
@@ -210,7 +231,10 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) if a claim gives a formula for a quantity after substituting its hypotheses; or None."""
+    """Return (None, verdict) if a claim gives a formula for a quantity once its hypotheses are substituted; else None.
+
+    The hypotheses are abbreviations, such as ``c1 = cos(alpha)``.
+    """
     expanded = claim.expanded
     if expanded is claim or expanded.hypotheses:
         return None
@@ -243,7 +267,10 @@ def _place_of(claim: Claim) -> Iterator[None]:
 
 
 def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict with the result of the check of units, and with the name and place of the claim."""
+    """Return a verdict with the result of the check of units, and with the name, place and time of the claim.
+
+    ``start`` is the reading of the clock when the check began.
+    """
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
@@ -252,7 +279,10 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return the verdict with a diagnosis: the probable fault, or a remark that one side is not defined everywhere."""
+    """Return ``verdict`` with the probable fault and repairs of the claim, if it is false or conditional.
+
+    A true claim gets a remark if one of its sides is not defined everywhere and the other is.
+    """
     if claim.relation is None or is_large(claim.equation):
         return verdict
     if any(requirement.code == "positive_base" for requirement in decision.requires):
@@ -271,7 +301,10 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return a remark if one side of a true claim is defined everywhere and the other side is not."""
+    """Return a remark on a true claim if one side is defined everywhere and the other side is not: ``x == x**2/x``.
+
+    Otherwise return a diagnosis with the code "none".
+    """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
     left, right = (decide_equation(side.equation).conditions for side in sides)

@@ -38,7 +38,10 @@ def with_plain_signs(source: str) -> str:
 
 
 def _with_definitions_first(text: str) -> str:
-    """Return LaTeX with the definitions after the word "where" moved in front of the formula that uses them."""
+    r"""Return LaTeX with the definitions after "where" moved to the front.
+
+    ``z \bar z = x^2 + y^2 where z = x + i y`` becomes ``z = x + i y, z \bar z = x^2 + y^2``.
+    """
     match = _WHERE.search(text)
     if match is None or "=" not in text[: match.start()] or "\\begin" in text:
         return text

@@ -87,7 +87,10 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
 
 
 def _is_condition(claim: Claim) -> bool:
-    """Return whether an inequality only restricts values, since no letter is on both of its sides."""
+    """Return whether an inequality only restricts values, as ``omega > 2`` does: no letter is on both sides.
+
+    Nothing is claimed then, so that it is neither true nor false.
+    """
     assert claim.relation is not None
     if claim.hypotheses:
         return False
@@ -108,10 +111,12 @@ def _letters(tree: Node) -> set[str]:
 
 
 def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
-    """Return the verdict on an inequality between the three moments of inertia of a body; None for other inequalities.
+    """Return the verdict on an inequality between the three moments of inertia of a body, such as I_1 + I_2 >= I_3.
 
-    With X, Y, Z for the integrals of x^2, y^2, z^2 over the mass, the moments are Y + Z, X + Z and X + Y. These
-    integrals are never negative, and one of them is zero only for a plane plate.
+    Return None for other inequalities. ``difference`` is the larger side minus the smaller one, ``strict`` tells > from
+    >=, and ``flipped`` is the inequality with the opposite sign, for a repair. With X, Y, Z for the integrals of x^2,
+    y^2, z^2 over the mass, the moments are Y + Z, X + Z and X + Y. These integrals are never negative, and one of them
+    is zero only for a plane plate.
     """
     names = {symbol.name for symbol in difference.free_symbols}
     own = next((moments for moments in MOMENTS if names == {*moments}), None)
@@ -135,7 +140,10 @@ def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
 
 
 def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexample | None:
-    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none."""
+    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none.
+
+    It fails where ``difference``, the larger side minus the smaller one, is negative or, if ``strict``, zero.
+    """
     equation = claim.equation
     if equation.hypotheses or equation.nonzero or equation.bases:
         return None
@@ -172,5 +180,5 @@ def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
 
 
 def is_inequality(signs: tuple[str, ...]) -> bool:
-    """Return whether the relation signs of a line are a single inequality sign."""
+    """Return whether ``signs``, the relation signs in a line of text, are a single one of <, <=, > and >=."""
     return len(signs) == 1 and signs[0] in OPPOSITE

@@ -46,7 +46,10 @@ def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
 
 
 def changed_entry(relation: Relation, repaired: str) -> tuple[int, int] | None:
-    """Return (row, column) of the only matrix entry that a repair changes; None if it changes anything else."""
+    """Return (row, column), from 1, of the only matrix entry in which ``repaired``, a text, differs from a relation.
+
+    Return None if anything else differs.
+    """
     try:
         other = read_relation(repaired.partition(" with ")[0])
     except InputError:
@@ -75,7 +78,10 @@ def _rows(side: Node) -> list[tuple[Node, ...]] | None:
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:
-    """Return a line with a caret under each marked character of a text between two positions, for a terminal."""
+    """Return a line for a terminal with a caret under each marked character of a text.
+
+    ``spans`` are the marked positions; the text is cut out of a longer one between ``start`` and ``end``.
+    """
     marks = (any(first <= place < last for first, last in spans) for place in range(start, end))
     return "".join("^" if mark else " " for mark in marks).rstrip()
 
@@ -105,7 +111,10 @@ def latex_with_marks(text: str, spans: Sequence[Span]) -> str:
 
 
 def _is_formula(piece: str) -> bool:
-    """Return whether a part of a LaTeX text is complete: its brackets match, and it ends with no open command."""
+    r"""Return whether a part of a LaTeX text can be underlined: its brackets match, and no command lacks its argument.
+
+    ``x^{2}`` is such a part; ``\frac`` and ``{2`` are not.
+    """
     depth = 0
     for token in TOKEN.findall(piece):
         depth += (token in ("{", "\\left")) - (token in ("}", "\\right"))
@@ -117,7 +126,10 @@ def _is_formula(piece: str) -> bool:
 
 
 def _stands_alone(text: str, start: int, end: int) -> bool:
-    """Return whether a part of a LaTeX text is no index, exponent or base, and no argument of a command."""
+    """Return whether the part of a LaTeX text from ``start`` to ``end`` is no index, exponent or base, and no argument.
+
+    Underlining such a part, as 2 in ``x^2``, would break the formula.
+    """
     before, after = text[:start].rstrip(), text[end:].lstrip()
     if re.search(r"([\^_]|\\(?!\\)[A-Za-z]+\{?|\}\{)$", before) and not before.endswith(("\\cdot", "\\times")):
         return before.endswith("{") and after.startswith("}")

@@ -30,13 +30,14 @@ TURN = 7
 
 
 def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return the verdict on a claim in which a name stands for each product of units.
+    """Return the verdict on a claim whose numbers have units, as ``1500 rpm = 157.08 rad/s``.
 
     Parameters
     ----------
     claim : Claim
+        The claim, in which a name stands for each product of units.
     measured : Measured
-        The text and its units.
+        The typed text, and the unit for each of these names.
     decide : callable
         The function that decides a claim without units.
 
@@ -66,7 +67,11 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return the diagnosis and the repair of a false equation whose right side is a whole number with a unit."""
+    """Return the diagnosis and the repair of a false equation whose right side is a whole number with a unit.
+
+    They are the fields ``diagnosis`` and ``repairs`` of a verdict, empty if no right number is known. ``factors`` has,
+    for each name of a unit, the factor to SI units.
+    """
     left, right = sides
     digits, unit = _decimal(right, measured.text, r"\d+")
     try:
@@ -82,14 +87,18 @@ def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], mea
 
 
 def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
-    """Return a tree in which the factors to SI units replace the names of the units."""
+    """Return a tree with the factors to SI units in place of the names of units: 1500 times 2*pi/60 for 1500 rpm."""
     if tree.kind == "name" and tree.value in factors:
         return factors[str(tree.value)]
     return replace(tree, args=tuple(_in_si(child, factors) for child in tree.args))
 
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
-    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations."""
+    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations.
+
+    ``sides`` are those of the equation with names for the units, and ``factors`` has the factor to SI units for each
+    name.
+    """
     verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
@@ -113,13 +122,17 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
 
 
 def _is_irrational(claim: Claim, value: Node) -> bool:
-    """Return whether a number is irrational, so that a whole number can equal it only after rounding."""
+    """Return whether the number ``value`` is irrational, so that a whole number can equal it only after rounding."""
     number_of_unit = claim.interpreter().read(value)
     return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return the verdict that compares a value with the rounded number printed for it on one side of a text."""
+    """Return the verdict on a rounded number: whether the value of ``worked`` rounds to the digits printed for it.
+
+    ``unit`` is the unit of the number, and ``is_right`` tells whether it is on the right side of the text. Return None
+    if this cannot be decided.
+    """
     digits = worked.printed
     decision = decide_value(worked)
     if decision.verdict == "true":
@@ -137,7 +150,11 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return, in a tuple, the repair that puts the right number before its unit on one side of a text."""
+    """Return, in a tuple, the repair of the text ``source`` that puts the number ``right`` in place of ``digits``.
+
+    The digits must stand before ``unit``: at their last place in the text if ``is_right``, else at the first one. The
+    tuple is empty if there is no such place.
+    """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
         return ()
@@ -146,7 +163,10 @@ def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool
 
 
 def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
-    """Return (digits, unit) of a number with a unit whose digits match a pattern; empty texts for any other tree."""
+    """Return (digits, unit) of a number with a unit: the typed digits "157.08", and the name of rad/s.
+
+    The texts are empty for any other tree, and if the digits do not match ``pattern``. ``source`` is the typed text.
+    """
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
     first, unit = tree.args
@@ -155,7 +175,11 @@ def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return the verdict with a remark on angles that are plain numbers and may be meant in degrees."""
+    """Return ``verdict`` with a remark if a claim has angles like 30 in ``sin(30)``, which may be meant in degrees.
+
+    If the claim is false in radians and true in degrees, the remark is its diagnosis, with a repair. ``decide`` returns
+    the verdict on the claim in degrees.
+    """
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation
@@ -180,7 +204,10 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is a sine or the like of a number that is so large that it is probably in degrees."""
+    """Return whether a tree is the sine (or the like) of a number from 7 on, which is probably in degrees.
+
+    In radians it would be more than a turn.
+    """
     return (
         node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
     )

@@ -52,7 +52,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
 
 
 def _in(notation: Notation, values: str) -> str:
-    """Return values such as ``x == sqrt(2) and x == 3`` in a notation; words are unchanged."""
+    """Return values such as ``x == sqrt(2) and x == 3`` in the notation of the claim; words are returned unchanged."""
     return notation.condition(values) if "==" in values else values
 
 
@@ -63,7 +63,10 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return a sentence on the values for which an equation for one letter holds; None if there are none, or all."""
+    """Return the values of a letter for which an equation holds, as ``"x == 2"``; None if there are none, or all.
+
+    ``once`` tells whether the letter occurs only once; otherwise only polynomials are solved.
+    """
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)
     if not all(isinstance(side, Expr) for side in (left, right)):
@@ -90,7 +93,11 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return a sentence on the real roots of a polynomial with rational coefficients; None if it has none."""
+    """Return the real roots of a polynomial ``difference`` as text: ``"x == -2 and x == 2"`` for x^2 - 4.
+
+    ``name`` is the text of the unknown ``symbol``. For irrational roots of a high degree, only their number is stated.
+    Return None if there is no real root.
+    """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")
     except PolynomialError:
@@ -104,7 +111,7 @@ def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
 
 
 def _is_polynomial(claim: Claim, letter: Node) -> bool:
-    """Return whether both sides are sums of different powers of a letter, and each power is on one side only.
+    """Return whether both sides are sums of different powers of a letter, each on one side only, as in ``x^2 = 4``.
 
     ``(x + 1)^2 = x^2 + 1`` and ``2x = 3x`` are meant as identities; so may be ``x + 2x = 4x``.
     """
@@ -115,7 +122,10 @@ def _is_polynomial(claim: Claim, letter: Node) -> bool:
 
 
 def _exponents(side: Node, letter: Node) -> Sequence[Any] | None:
-    """Return the powers of a letter in the terms of a sum, 0 for a number; None for a sum with other terms."""
+    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``.
+
+    Return None if a term is not a power of the letter times a number.
+    """
     exponents = []
     for term in side.args if side.kind == "sum" else (side,):
         bare = term.args[0] if term.kind == "neg" else term

@@ -47,7 +47,7 @@ def with_sign(context: Context, name: Node, sign: str) -> Context:
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return an equivalent claim in which products of inertia are defined with the minus sign."""
+    """Return an equivalent claim for products of inertia with the minus sign: ``I_xy = -a`` for ``I_xy = a``."""
     if claim.relation is None:
         return claim
     meanings = tuple(
@@ -59,7 +59,10 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Turn the verdict on the claim with changed signs into the verdict on the original claim; a note says so."""
+    """Return the verdict on the original claim from that on the claim of :func:`with_minus_sign`.
+
+    The repairs change their signs back, and a note names the convention.
+    """
     repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
     return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
 
@@ -73,7 +76,10 @@ def _restored(repair: Repair) -> Repair | None:
 
 
 def _changed(relation: tuple[str, Node, Node]) -> tuple[str, Node, Node]:
-    """Return an equation with the opposite sign of each product of inertia, solved for the same quantity."""
+    """Return an equation with the opposite sign of each product of inertia: ``I_xy = -a`` for ``I_xy = a``.
+
+    If a side is a single product of inertia, both sides change their signs, so that it has none.
+    """
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
     if any(map(_is_product, sides)):

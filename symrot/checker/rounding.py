@@ -16,8 +16,8 @@ __all__ = ["rounded_value", "with_rounding"]
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim that equates a value and a decimal number to which the value rounds.
 
-    If the value does not round to the number, the diagnosis gives the correct digits. Every other verdict is
-    returned unchanged.
+    An example is ``2/3 == 0.667``. If the value does not round to the number, the diagnosis gives the correct digits.
+    Every other verdict is returned unchanged.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict
@@ -30,9 +30,9 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def rounded_value(claim: Claim) -> str:
-    """Return the value of a worked number as text, rounded to as many digits as the document prints.
+    """Return the value of a number that a document computes, rounded to as many digits as the document prints for it.
 
-    The text is empty if the value is not known well enough, or if the printed number has a power of ten.
+    The text is empty if the value is not known well enough to be rounded.
     """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
@@ -45,7 +45,7 @@ def rounded_value(claim: Claim) -> str:
 
 
 def _decimal(node: Node, source: str) -> str:
-    """Return the digits of a tree that is a decimal number, as they were typed; an empty text for any other tree.
+    """Return the digits of a tree that is a decimal number, as they were typed in ``source``; "" for any other tree.
 
     A decimal number times a power of ten is one number: ``7.27e-5`` for ``7.27*10^-5``.
     """
@@ -58,7 +58,7 @@ def _decimal(node: Node, source: str) -> str:
 
 
 def _scientific(tree: Node) -> tuple[Node, int]:
-    """Return the number and the power of ten in a product such as ``7.27*10^-5``; any other tree, and the power 0."""
+    """Return (7.27, -5) for a product such as ``7.27*10^-5``; for any other tree, the tree itself and the power 0."""
     if tree.kind != "product" or len(tree.args) != 2 or tree.args[1].kind != "power":
         return tree, 0
     mantissa, (base, exponent) = tree.args[0], tree.args[1].args
@@ -69,9 +69,10 @@ def _scientific(tree: Node) -> tuple[Node, int]:
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of a whole number that must be rounded, such as 157 for ``1500*2*pi/60``; otherwise "".
+    """Return the digits of a whole number that can be equal to ``value`` only after rounding; otherwise "".
 
-    It has at least three digits, the last one not 0, and the value has pi, a root or a decimal number.
+    An example is 157 for ``1500*2*pi/60``. It has at least three digits, the last one not 0, and the value has pi, a
+    root or a decimal number.
     """
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
@@ -88,7 +89,7 @@ def _is_constant(node: Node) -> bool:
 
 
 def _begins_with(worked: Claim) -> bool:
-    """Return whether the decimal digits of a value begin with the printed ones, as those of 2/3 do with ``0.66..``."""
+    """Return whether the digits of the value of ``worked`` begin with the printed ones, as for 2/3 and ``0.66..``."""
     assert worked.value is not None
     places = len(worked.printed.partition(".")[2])
     half = number(Fraction(5, 10 ** (places + 1)))

@@ -23,7 +23,10 @@ MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
 
 
 def with_axis_z(claim: Claim) -> Claim:
-    """Return the claim that says the same about the body with z as its axis of symmetry."""
+    """Return an equivalent claim about the body with z as its axis of symmetry: ``I_z = ..`` for ``I_x = ..``.
+
+    A claim whose context states no body is returned unchanged.
+    """
     body = claim.context.body
     if body is None or claim.relation is None:
         return claim
@@ -33,7 +36,10 @@ def with_axis_z(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict, axis: str) -> Verdict:
-    """Turn a verdict on the claim with z as the axis of symmetry into one on the claim itself; a note says so."""
+    """Return the verdict on the original claim from that on the claim of :func:`with_axis_z`.
+
+    ``axis`` is the axis of symmetry, x or y. The repairs get the names of the original claim, and a note says so.
+    """
     back = {new: old for old, new in TURNED[axis].items()}
     repairs = tuple(changed for repair in verdict.repairs if (changed := _restored(repair, back)) is not None)
     note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
@@ -49,7 +55,10 @@ def _restored(repair: Repair, back: Mapping[str, str]) -> Repair | None:
 
 
 def _renamed(relation: tuple[str, Node, Node], axes: Mapping[str, str]) -> tuple[str, Node, Node]:
-    """Return an equation in which the moments of inertia have other axes."""
+    """Return an equation whose moments of inertia are about other axes, as I_z for I_x.
+
+    ``axes`` gives the new axis for each of x, y and z.
+    """
 
     def renamed(tree: Node) -> Node:
         if tree.kind == "name" and (match := MOMENT.fullmatch(str(tree.value))):

@@ -103,7 +103,8 @@ def verdict_on_readings(
 ) -> Verdict:  # fmt: skip
     """Return the verdict on the usual reading (interpretation) of a text, with notes on readings whose verdict differs.
 
-    ``notation`` returns the notation in which the formulas of a reading are written.
+    ``notation`` returns the notation in which the formulas of a reading are written. The other arguments are those of
+    :func:`verdict_on_text`.
 
     Raises
     ------
@@ -151,17 +152,20 @@ def verdict_on_readings(
 
 
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
-    """Return whether the meaning that the context states makes a reading false."""
+    """Return whether a reading is false because the context ``stated`` says which known quantity is meant.
+
+    The formula is then another one than that of the quantity.
+    """
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
-    """Return whether the verdict on a reading is "definition": nothing known is like its formula."""
+    """Return whether the verdict on a reading is "definition": symrot derives no formula like it."""
     return reading[1].verdict == "definition"
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return the verdict, or "definition" for a text that has both letters and numbers with units.
+    """Return ``verdict``, or "definition" for a text that has both letters and numbers with units: ``F = m a = 6 N``.
 
     Such a text is an equation for its letters and no identity. In ``F = m a = 2 kg * 3 m/s^2 = 6 N``, the end without
     letters is decided.
@@ -191,7 +195,9 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units: on the reading that is true, or whose units fit.
+    """Return the verdict on a text whose numbers have units.
+
+    If units can be read in several ways, it is that on the reading that is true, or else on one whose units fit.
 
     Raises
     ------
@@ -245,12 +251,12 @@ def _on_units(
 
 
 def names_of(reading: Reading) -> set[str]:
-    """Return the names in a reading; a rate has a ``d`` in front of its name."""
+    """Return the names of quantities in a reading of a text; the rate of phi has the name dphi."""
     return {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
-    """Return the sentence that reports the verdict on a reading other than the usual one."""
+    """Return the sentence for a note that reports the verdict on ``reading``, a reading besides the ``usual`` one."""
     places = reading.flipped or usual.flipped
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)
@@ -273,7 +279,8 @@ def verdict_on_reading(
 ) -> Verdict:  # fmt: skip
     """Return the verdict on one reading of a text: on its only equation, or on all equations of its chains and lines.
 
-    ``notation`` is the notation in which formulas are written, and ``stated`` the context that the user states.
+    ``notation`` is the notation in which formulas are written, ``source`` the typed text, and ``stated`` the context
+    that the user states. The other arguments are those of :func:`verdict_on_text`.
     """
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
@@ -317,12 +324,15 @@ def _on_inequality(
 
 
 def _differs(echo: str, source: str) -> bool:
-    """Return whether the claim as it was read differs from the typed text in more than blanks."""
+    """Return whether ``echo``, the claim as it was read, differs from the typed text in more than blanks.
+
+    Only then is it printed beside the verdict.
+    """
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
-    """Return the verdict on one equation.
+    """Return the verdict on one equation, written in the notation of the text.
 
     If the text is ``plain``, not SymPy syntax, a false equation may be meant as a condition, such as ``x^2 = 4``: its
     verdict is then "definition".
@@ -351,7 +361,11 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on ``L = T - V`` after lines in which L is a length: L is then the name of two quantities."""
+    """Return the verdict on ``L = T - V`` after lines in which L is a length, such as ``I = m L^2``.
+
+    L is then the name of two quantities: the verdict is that on the claim with another name for the length, with a
+    note. It is ``verdict`` for all other claims, and if the claim stays false.
+    """
     assert claim.relation is not None
     _, left, right = claim.relation
     name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
@@ -369,14 +383,14 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _with_name(tree: Node, old: str, new: str) -> Node:
-    """Return a tree with another name in place of one name."""
+    """Return a tree with the name ``new`` in place of the name ``old``."""
     if tree.kind == "name" and tree.value == old:
         return replace(tree, value=new)
     return replace(tree, args=tuple(_with_name(part, old, new) for part in tree.args))
 
 
 def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return a note on the convention by which a true claim with ``x^0`` holds for x = 0 too."""
+    """Return, in a tuple, a note on the convention ``0^0 = 1`` for a true claim with a power ``x^0``; otherwise ()."""
     sides = claim.relation[1:] if claim.relation else ()
     nodes = [node for side in sides for _, node in walk(side)]
     powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == ZERO]
@@ -385,7 +399,10 @@ def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return a note on a true claim that exchanges capital letters: it may be false if these are matrices."""
+    """Return, in a tuple, a note on a true claim such as ``A B = B A``, in which A and B may be matrices; otherwise ().
+
+    For matrices the claim may be false.
+    """
     if verdict.verdict != "true" or claim.relation is None:
         return ()
     known = {*dict(claim.define), *claim.symbols}
@@ -403,7 +420,7 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
-    """Return a repair in the notation of the claim, with the positions at which it differs from the claim."""
+    """Return a repair in the notation of the claim, with the positions at which its text differs from the claim's."""
     if claim.relation is None:
         return replace(repair, text=notation.rewritten(repair.text))
     texts: Sequence[str] = (relation_text(claim.relation), repair.text)
@@ -415,7 +432,10 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _with_plain_arrays(source: str) -> str:
-    """Return the text of an equation with quaternions and Pauli's matrices as people write them."""
+    """Return the text of an equation as people write it, with ``q*p`` for the quaternion ``qmul(q, p)``.
+
+    Other texts are returned unchanged.
+    """
     relation = _relation_of(source)
     if relation is None or not has_arrays(relation[1:]):
         return source
@@ -424,7 +444,7 @@ def _with_plain_arrays(source: str) -> str:
 
 
 def _relation_of(source: str) -> Relation | None:
-    """Return the equation of a text; None for a repair with words in it."""
+    """Return the equation that is the text of a repair; None if the text has words too."""
     try:
         return read_relation(source)
     except InputError:
@@ -474,7 +494,7 @@ def _on_parts(
 ) -> Verdict:
     """Return the verdict on a chain or several lines: the worst verdict on any of their equations, and a note on each.
 
-    ``units`` are the names that stand for units.
+    ``verdicts`` are those on the equations in the order of ``lines``, and ``units`` the names that stand for units.
     """
     remaining = iter(verdicts)
     counted, notes = [], []
@@ -516,8 +536,8 @@ def _on_parts(
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
     """Return the verdict on several conditional equations, with the conditions of all of them.
 
-    With ``both_signs``, these are the two equations that an equation with ± stands for, each with its own
-    condition.
+    ``conditions`` has the alternative requirements of each equation. With ``both_signs``, these are the two equations
+    that an equation with ± stands for, each with its own condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
@@ -558,7 +578,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
 
 
 def _depends_on_letters(claim: Claim) -> bool:
-    """Return whether the value of the left side of a claim depends on a letter, as that of sin²x + cos²x does not."""
+    """Return whether the value of a claim's left side depends on a letter, as that of sin²x + cos²x does not.
+
+    If it does, ``sin x = 1/2`` in a chain is no error but holds for certain values of x.
+    """
     left = claim.equation.left
     return not is_matrix(left) and bool(normal_form(left).free_symbols)
 

@@ -102,8 +102,9 @@ def finding_of(
 ) -> Finding:
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    The ``proposal`` of a correction may be empty. A claim that is false, but true under the proposed ``condition``,
-    is conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
+    The ``proposal`` of a correction, a formula by place, may be empty. A claim that is false, but true under the
+    proposed ``condition``, is conditional. So is a true claim that divides by a number which the ``condition`` says may
+    be zero.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -152,7 +153,7 @@ def _may_be_broken(condition: str) -> bool:
 
 
 def _prove(claim: Claim, condition: Condition) -> None:
-    """Raise InputError if the exact engine does not prove the claim under the condition."""
+    """Raise InputError if the exact engine does not prove that a claim is true under a proposed condition."""
     declared = Declared({*claim.symbols, *(name for name, _ in claim.define)}, claim.functions)
     hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
     if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
@@ -161,7 +162,9 @@ def _prove(claim: Claim, condition: Condition) -> None:
 
 
 def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
-    """Return the corrected parts of a claim, by place: the proven proposal, or else the nearest repair, or nothing.
+    """Return the corrected parts of a false claim, by place: a side, or the name of a definition.
+
+    They are those of the ``proposal`` or, without one, of the nearest repair in ``verdict``; there may be none.
 
     Raises
     ------
@@ -186,7 +189,10 @@ def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> 
 
 
 def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
-    """Return a function that maps a node of one of the kinds to its first argument, and any other node to itself."""
+    """Return a function that removes the sign of a node whose kind is in ``kinds``: it maps ``-a`` to a for "neg".
+
+    The function returns any other node unchanged.
+    """
     return lambda node: node.args[0] if node.kind in kinds else node
 
 
@@ -217,7 +223,10 @@ lost with them."""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether an equation differs from a claim only by characters that were lost in its printed side."""
+    """Return whether ``other`` is the equation of a claim with characters put back that its printed side lost.
+
+    ``lost`` are the kinds of characters that the extraction loses.
+    """
     assert claim.relation is not None
     return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)
 
@@ -241,7 +250,7 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula as a lossy extraction would print it: without the kinds of characters in ``lost``."""
+    """Return a formula without the characters of the kinds ``lost``: ``a + b`` for ``a - b`` without minus signs."""
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

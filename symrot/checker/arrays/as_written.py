@@ -14,18 +14,21 @@ QUATERNION, UNIT = ("qmul", "conjugate"), Node("call", "eye", (number(4),))
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas call a function for quaternions, or have ``eye(4)``, the 1 beside Pauli's matrices."""
+    """Return whether formulas call a function for quaternions or contain ``eye(4)``, which :func:`as_written` replaces.
+
+    ``eye(4)`` is the number 1 in equations with Pauli's matrices, which are computed as real 4 x 4 matrices.
+    """
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether the sides of a proposed correction contain ``i^T``: nobody transposes the imaginary unit."""
+    """Return whether the sides of a repair contain ``i^T``: nobody transposes i, so such a repair is not offered."""
     return Node("transpose", None, (Node("name", "i"),)) in [node for side in sides for _, node in walk(side)]
 
 
 def as_written(tree: Node) -> Node:
-    """Return a formula with plain products, lengths and numbers in place of the calls for arrays.
+    """Return a formula as people write it: with plain products, lengths and numbers in place of calls such as ``qmul``.
 
     Examples
     --------
@@ -51,7 +54,7 @@ def as_written(tree: Node) -> Node:
 
 
 def _scalar(tree: Node) -> Node | None:
-    """Return s of a column (s, 0, 0, 0), which is the quaternion of a number; None for any other formula."""
+    """Return s if ``tree`` is a column (s, 0, 0, 0), which is the number s as a quaternion; None otherwise."""
     inside = tree.args[0] if tree.kind == "call" and tree.value == "Matrix" else tree
     if inside.kind != "list" or len(inside.args) != 4 or any(part != number(0) for part in inside.args[1:]):
         return None

@@ -99,7 +99,10 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
 
 
 def _pair(node: Node, letter: str) -> frozenset[str]:
-    """Return the names x and y if a sum is ``x + i*y`` or ``x - i*y``; an empty set for any other sum."""
+    """Return the names {x, y} if a sum is ``x + i*y`` or ``x - i*y``; an empty set for any other sum.
+
+    i is the ``letter``.
+    """
     first, *rest = map(_without_sign, node.args)
     if len(rest) != 1 or first.kind != "name" or rest[0].kind != "product" or len(rest[0].args) != 2:
         return frozenset()
@@ -108,7 +111,7 @@ def _pair(node: Node, letter: str) -> frozenset[str]:
 
 
 def _has_factor(node: Node, letter: str) -> bool:
-    """Return whether a sum has a term with the letter as a factor and a term without it, as ``x + i*y`` has for i."""
+    """Return whether a sum has a term with the factor ``letter`` and a term without it, as ``x + i*y`` has for i."""
     factors = [term.args if term.kind == "product" else (term,) for term in map(_without_sign, node.args)]
     return len({any((f.kind, f.value) == ("name", letter) for f in own) for own in factors}) == 2
 
@@ -118,7 +121,11 @@ def _without_sign(term: Node) -> Node:
 
 
 def _is_of_complex(node: Node, letter: str) -> bool:
-    """Return whether a formula is the real part, imaginary part, conjugate or absolute value of a complex number."""
+    """Return whether a formula is Re, Im, the conjugate or the absolute value of a number that may be complex.
+
+    The number must be a name, as in ``|z|`` and ``z_bar``, or contain the imaginary unit ``letter``, as in ``Re(x +
+    i*y)``.
+    """
     if node.kind == "name" and str(node.value).endswith(BAR):
         return True
     argument = node.args[0] if node.kind == "call" and node.value in OF_COMPLEX else None
@@ -126,7 +133,10 @@ def _is_of_complex(node: Node, letter: str) -> bool:
 
 
 def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree with the formulas of complex numbers in place of their names; ``z_bar`` becomes a conjugate."""
+    """Return a tree with formulas in place of the names of complex numbers; ``z_bar`` becomes a conjugate.
+
+    ``numbers`` gives the formula for each name, such as ``x + i*y`` for z.
+    """
     if tree.kind == "name" and tree.value in numbers:
         return numbers[str(tree.value)]
     if tree.kind == "name" and (name := str(tree.value).removesuffix(BAR)) in numbers:
@@ -137,10 +147,10 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
     """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
 
-    Only z, w and zeta, with or without a number as in w_1, can be complex numbers. They are if the formulas have the
-    conjugate, the real part or the imaginary part of one of them, or have ``z_bar`` and also an absolute value, a
-    conjugate, Re or Im of anything. The result is empty for formulas with integrals or with other barred names: there
-    ``z_bar`` is a coordinate of a centre of mass.
+    ``letter`` is the imaginary unit in the results. Only z, w and zeta, with or without a number as in w_1, can be
+    complex numbers. They are if the formulas have the conjugate, the real part or the imaginary part of one of them, or
+    have ``z_bar`` and also an absolute value, a conjugate, Re or Im of anything. The result is empty for formulas with
+    integrals or with other barred names: there ``z_bar`` is a coordinate of a centre of mass.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]
@@ -162,7 +172,7 @@ def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]
 
 
 def _conjugate(node: Node, letter: str) -> Node:
-    """Return the conjugate of a sum: the terms with the imaginary unit change sign."""
+    """Return the conjugate of a sum, in which each term with the imaginary unit ``letter`` changes its sign."""
     return sum_of([negated(term) if _letter_in(term, letter) else term for term in node.args], node.span)
 
 
@@ -186,7 +196,10 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 
 
 def is_complex(sides: Sequence[Node], letter: str) -> bool:
-    """Return whether an equation has the imaginary unit, or the real part, imaginary part or conjugate of a number."""
+    """Return whether the sides of an equation have complex numbers.
+
+    They have if the imaginary unit ``letter`` occurs, or Re, Im, the conjugate or the absolute value of a name.
+    """
     return any(
         _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
     )
@@ -195,8 +208,9 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return a complex equation with each side as a column (real part, imaginary part).
 
-    If a side is a single name, as in ``z = exp(i*x)``, it stays as it is: it only gives the other side a name. The
-    other side becomes a column, or its real part alone if it has no imaginary part.
+    ``letter`` is the imaginary unit, and ``source`` the typed text, for messages. If a side is a single name, as in ``z
+    = exp(i*x)``, it stays as it is: it only gives the other side a name. The other side becomes a column, or its real
+    part alone if it has no imaginary part.
 
     Raises
     ------

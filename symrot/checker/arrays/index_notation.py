@@ -29,7 +29,10 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation in index notation written out in components, and a note; return any other equation unchanged.
+    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note that says so.
+
+    Any other equation is returned unchanged, with an empty text; so is one that is a condition, as R_ik R_jk = delta_ij
+    is.
 
     Raises
     ------
@@ -63,9 +66,9 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k``, the component i of a cross product; j and k are letters that are not ``used``.
+    """Return ``epsilon_ijk a_j b_k``, the component ``index`` (here i) of the cross product of the ``pair`` a, b.
 
-    Return None if a factor of the cross product is no name, as in ``((a + b) × c)_i``.
+    j and k are letters that are not in ``used``. Return None if a or b is no name, as in ``((a + b) × c)_i``.
     """
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
@@ -97,10 +100,10 @@ def _indices(node: Node) -> str:
 
 
 def _is_condition(left: Node, right: Node) -> bool:
-    """Return whether an equation is no identity: it defines a quantity or restricts some, as R_ik R_jk = delta_ij does.
+    """Return whether an equation is no identity but restricts quantities, as R_ik R_jk = delta_ij does.
 
-    It counts as an identity if both sides have the same quantities; if one side is zero, and a quantity occurs twice
-    on the other, so that its terms can cancel; or if one side is a component v_i, for which the other is a formula.
+    It counts as an identity if both sides have the same quantities; if one side is zero, and a quantity occurs twice on
+    the other, so that its terms can cancel; or if one side is a component v_i, for which the other is a formula.
     """
     own = [Counter(_quantities(side)) for side in (left, right)]
     if "sigma" in (names := {*own[0], *own[1]}) and names <= OF_PAULI:
@@ -156,9 +159,9 @@ def _counts(term: Node) -> Counter[str]:
 
 
 def _counts_of_terms(integrand: Node) -> Counter[str]:
-    """Return the free indices of an integrand, each counted once.
+    """Return the free indices of the integrand of an integral over a body, each counted once.
 
-    Its repeated indices are not counted: they are summed inside the integral.
+    An index that occurs twice in a term of the integrand is not counted: it is summed inside the integral.
     """
     free = [_once(_counts(term)) for term in _terms(integrand)]
     return free[0] if len({frozenset(own) for own in free}) == 1 else sum(free, Counter())
@@ -169,7 +172,7 @@ def _once(counts: Counter[str]) -> Counter[str]:
 
 
 def _free(term: Node) -> tuple[str, ...]:
-    """Return the indices that occur once in a term, in order."""
+    """Return the free indices of a term in alphabetical order, those that occur once: i and j for ``a_ik b_kj``."""
     counts = _counts(term)
     often = [index for index, count in counts.items() if count > 2]
     if often:
@@ -178,7 +181,10 @@ def _free(term: Node) -> tuple[str, ...]:
 
 
 def _component(side: Node, values: Mapping[str, str]) -> Node:
-    """Return a side with numbers for its free indices and with its sums written out: one component of the equation."""
+    """Return one component of a side: with the numbers ``values`` for its free indices, and with its sums written out.
+
+    The component 1 of ``A_ij b_j`` is ``A_11 b_1 + A_12 b_2 + A_13 b_3``.
+    """
     if side.kind == "sum":
         return sum_of([_component(part, values) for part in side.args])
     if side.kind == "neg":
@@ -203,7 +209,7 @@ def _component(side: Node, values: Mapping[str, str]) -> Node:
 
 
 def _with_values(term: Node, values: Mapping[str, str]) -> Node:
-    """Return a term with numbers in place of its indices; zero if one of its factors is zero."""
+    """Return a term with the numbers ``values`` in place of its indices: A_12 for A_ij. A zero factor makes it zero."""
     if term.kind == "call" and term.value == "integral_over_body":
         return replace(term, args=tuple(_as_coordinates(_component(part, values)) for part in term.args))
     if indices := _indices(term):

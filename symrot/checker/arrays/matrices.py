@@ -26,7 +26,10 @@ TIME = Node("name", "t")
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
-    """Return the tree of a 3 x 3 matrix with the entries A_11, A_12 and so on, functions of time if it is ``timed``."""
+    """Return the tree of a 3 x 3 matrix, for the ``name`` A with the entries A_11, A_12 and so on.
+
+    The entries are functions of time, as A_11(t), if it is ``timed``.
+    """
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
@@ -40,7 +43,10 @@ def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions that make the matrices ``names`` rotations: products of three rotations by any angles."""
+    """Return definitions in which each matrix of ``names`` is a rotation, not a matrix of any nine entries.
+
+    The rotation is a product of three elementary rotations by any angles.
+    """
     return [
         (name, _rotation(name, tree == matrix_of_entries(name, timed=True)) if name in names else tree)
         for name, tree in definitions
@@ -48,7 +54,10 @@ def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]
 
 
 def _rotation(name: str, timed: bool) -> Node:
-    """Return the tree of the product of three rotations about z, x and z."""
+    """Return the tree of a rotation for the matrix ``name``: rotations about z, x and z by any three angles.
+
+    The angles depend on time if ``timed``.
+    """
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     turns = [Node("call", f"R{axis}", (Node(kind, f"{name}_angle{n}", args),)) for n, axis in enumerate("zxz", 1)]
     return Node("product", None, tuple(turns))
@@ -59,9 +68,10 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the capital letters that a claim uses as matrices, without the ``known`` ones, which it defines.
+    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``.
 
-    The name of the unit matrix is left out, unless it is the only argument of a determinant or trace.
+    The names in ``known``, which the claim defines, are left out. So is that of the unit matrix, unless it is the only
+    argument of a determinant or trace.
     """
     names: dict[str, None] = {}
     for side in sides:
@@ -77,10 +87,10 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return the bold capital letters that are matrices and not vectors, each with whether it depends on time.
+    """Return those bold capital letters, among the names ``vectors``, that are matrices and not vectors.
 
-    Such a name is on the left of another vector or matrix in a product, as R in ``R v`` and ``R [w]x``, or the
-    argument of a determinant or trace.
+    Each comes with whether it depends on time. Such a name is on the left of another vector or matrix in a product, as
+    R in ``R v`` and ``R [w]x``, or the argument of a determinant or trace.
     """
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
@@ -100,7 +110,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return the matrices R of equations such as ``R' = skew(w) R``, each with whether it depends on time."""
+    """Return the matrices R of equations such as ``R' = skew(w) R``, each with whether it depends on time as R(t).
+
+    It does not if the text has the plain name R_dot for its rate.
+    """
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         is_rate = side.kind == "call" and side.value == "diff" and len(side.args) == 2
@@ -147,7 +160,10 @@ def _is_array(node: Node, vectors: Collection[str]) -> bool:
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the small letters that a claim uses as columns, as in ``r^T r`` and ``(R v)^T``, and does not define."""
+    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``.
+
+    The names in ``known``, which the claim defines, are left out.
+    """
     names: dict[str, None] = {}
     for side in sides:
         for _, node in walk(side):
@@ -177,7 +193,10 @@ def _of_matrix(node: Node) -> Sequence[Node]:
 
 
 def _of_form(factors: Sequence[Node]) -> list[Node]:
-    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``."""
+    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``.
+
+    ``factors`` are those of a product. The result is empty if they do not begin and end with such columns.
+    """
     first, *between, last = factors
     columns = [first.args[0] if first.kind == "transpose" else number(0), last]
     if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
@@ -186,7 +205,7 @@ def _of_form(factors: Sequence[Node]) -> list[Node]:
 
 
 def _factors(node: Node) -> Iterator[str]:
-    """Yield the names in a formula that are factors or terms of it; names inside function calls are left out."""
+    """Yield the names that are factors or terms of a formula: A and B for ``A^2 + 3 B``, none for ``sin(x)``."""
     if node.kind == "name":
         yield str(node.value)
     elif node.kind in ("sum", "product", "neg", "transpose") or (node.kind == "power" and node.args[1].kind != "name"):
@@ -199,7 +218,8 @@ def with_lengths(
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
     """Return a relation with lengths in place of vectors where only a scalar makes sense, and the names of the vectors.
 
-    Only a scalar makes sense in a product of two columns, ``a b sin(x)``, and in a sum with a scalar.
+    ``shapes`` tells which names are vectors. Only a scalar makes sense in a product of two columns, as ``a b sin(x)``,
+    and in a sum with a scalar.
     """
     lengths = _Lengths(shapes)
     sign, left, right = relation
@@ -239,6 +259,9 @@ class _Lengths:
 
 
 def _has_added_name(node: Node) -> bool:
-    """Return whether a term of a sum is a single name, as in ``a + b``; such a name may be a vector too."""
+    """Return whether a term of a sum is a single name, as a and b in ``a + b``.
+
+    Such a name may be a vector too, so that the other terms need not be scalars.
+    """
     bare = [term.args[0] if term.kind == "neg" else term for term in node.args]
     return any(term.kind == "name" and not is_tensor(str(term.value)) for term in bare)

@@ -34,9 +34,10 @@ CALLS = ("sin", "cos", "trace", "Matrix")
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
     """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
-    These are the matrices if the equation has two of them and i, or a product or power of them and no
-    other name. Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no
-    definitions.
+    The definitions give the matrices that occur, i and the unit matrix, each as a real 4 x 4 matrix. Names like sigma_x
+    are Pauli's matrices if the equation has two of them and i, or a product or power of them and no other name.
+    Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no definitions. So it
+    is if one of these names is in ``known``, the names that the claim defines.
 
     Raises
     ------
@@ -71,7 +72,7 @@ def _is_product_of_matrices(node: Node) -> bool:
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
-    """Return the tree of ``[A, B]``, or with the sign ``+`` of the anticommutator ``{A, B}``.
+    """Return the tree of the commutator ``[A, B]`` of two formulas, A B - B A; with ``sign`` "+", A B + B A.
 
     Return None unless A and B each contain one of Pauli's matrices: otherwise ``[A, B]`` is a list of two components.
     """
@@ -82,7 +83,7 @@ def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
 
 
 def _with_commutators(tree: Node) -> Node:
-    """Return a tree in which typed lists of two matrices are commutators."""
+    """Return a tree in which lists of two formulas with Pauli's matrices, ``[sigma_x, sigma_y]``, are commutators."""
     args = tuple(map(_with_commutators, tree.args))
     pair = args[0].args if tree.value == "Matrix" and args[0].kind == "list" else ()
     bracket = commutator(*pair) if len(pair) == 2 and not any(part.kind == "list" for part in pair) else None
@@ -103,7 +104,7 @@ def _with_traces(tree: Node) -> Node:
 
 
 def eye() -> Node:
-    """Return the tree of the unit matrix."""
+    """Return the tree ``eye(4)`` of the unit matrix, which is the number 1 in equations with Pauli's matrices."""
     return Node("call", "eye", (number(SIZE),))
 
 
@@ -122,7 +123,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
-    """Return the first matrix name that occurs both inside and outside of exponents; an empty text without one."""
+    """Return the first name of ``matrices`` that occurs both inside and outside of exponents; "" if there is none."""
     exponents = [
         node.args[-1] for node in nodes if node.kind == "power" or (node.kind == "call" and node.value == "exp")
     ]
@@ -134,7 +135,7 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
     """Return a side as a matrix: a scalar s becomes s times the unit matrix.
 
-    In a matrix that is written out, each scalar entry does.
+    In a written-out matrix, each scalar entry becomes such a matrix. ``shapes`` tells which names are matrices.
     """
     if side.kind == "call" and side.value == "Matrix":
         (rows,) = side.args

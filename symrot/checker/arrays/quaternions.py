@@ -97,7 +97,10 @@ def used_quaternions(
 
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
-    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``."""
+    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``.
+
+    A name in ``others``, the vectors and defined names, is no such unit.
+    """
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
@@ -125,7 +128,7 @@ def _without_squares(node: Node) -> Node:
 
 
 def quaternion_product(left: Node, right: Node) -> Node:
-    """Return the tree of the product of two quaternions; scalar factors of the left one come first.
+    """Return the tree of the product of two quaternions; scalar factors of the left one, all but its last, come first.
 
     Examples
     --------
@@ -146,7 +149,10 @@ def _bare(node: Node) -> Node:
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
-    """Return the names that a claim uses as quaternions, in order of occurrence."""
+    """Return the names that a claim uses as quaternions, in order of occurrence, as q in ``q v q*``.
+
+    Names of ``vectors``, and names that the claim defines (``known``), are left out.
+    """
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
@@ -183,9 +189,9 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return the names that must be quaternions because of the form of an equation, which has no sign of a conjugate.
+    """Return [q] for ``v' = q v q`` and ``q' = 1/2 omega q``, where q must be a quaternion; an empty list otherwise.
 
-    This is q in ``v' = q v q`` and in ``q' = 1/2 omega q``; the result is empty for other forms.
+    The text of such an equation may have lost the sign of the conjugate.
     """
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
@@ -311,7 +317,8 @@ def _is_angular(node: Node) -> bool:
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
     """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0).
 
-    If a side is a vector or a name, the vector part of the quaternion on the other side is used.
+    If a side is a vector or a name, the vector part of the quaternion on the other side is used. ``shapes`` tells which
+    names are vectors and quaternions.
     """
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
@@ -325,7 +332,11 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 
 
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
-    """Return the definition of a quaternion by its components, and of its vector part if the text has a name for it."""
+    """Return the definition of the quaternion ``name`` by its components, as q = (q_0, q_1, q_2, q_3).
+
+    If a name for the vector part of q, as q_v, is among the names ``used`` in the text, its definition comes first. The
+    components are functions of time if ``moving``.
+    """
     style = "" if f"{name}0" in used or f"{name}1" in used else "_"
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
@@ -340,7 +351,10 @@ def _column(parts: Sequence[Node]) -> Node:
 
 
 def _with_time(node: Node, used: Collection[str], names: Sequence[str], moving: bool) -> Node:
-    """Return a tree in which the components of quaternions are functions of time, if the quaternions are ``moving``."""
+    """Return a tree with q_1(t) for q_1, and so on for all components of the quaternions ``names``, if ``moving``.
+
+    Otherwise return the tree unchanged.
+    """
     components = {f"{name}{style}{n}" for name in names for style in ("", "_") for n in range(4)}
     if moving and node.kind == "name" and node.value in components:
         return Node("call", node.value, (TIME,), node.span)

@@ -44,13 +44,19 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether a formula is linear in a vector: the vector part of a quaternion product with it as one factor."""
+    """Return whether ``image`` is a linear map of a vector: the vector part of a product that has the vector once.
+
+    An example is the vector part of ``q v q*``, for the vector v.
+    """
     nodes = [node for _, node in walk(image)]
     return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1
 
 
 def _matrix_of(image: Node, vector: Node) -> Node:
-    """Return the matrix of a linear map: its columns are the images of the unit vectors."""
+    """Return the matrix of the linear map that takes ``vector`` to ``image``.
+
+    Its columns are the images of the unit vectors.
+    """
     columns = [_with(image, vector, _column(place)) for place in range(3)]
     rows = [[Node("index", None, (column, number(row), number(0))) for column in columns] for row in range(3)]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))

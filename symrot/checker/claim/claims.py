@@ -123,7 +123,7 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a SymPy value with formulas in place of the names that the hypotheses in :attr:`defining` define."""
+        """Return a SymPy value with the formulas of :attr:`defining` in place of names: ``cos(alpha)`` for c1."""
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -131,7 +131,7 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim with formulas in place of the names of :attr:`defining`, and without the hypotheses for them."""
+        """The claim with the formulas of :attr:`defining` in place of names, without the defining hypotheses."""
         definitions = self.defining
         if self.relation is None or not definitions:
             return self
@@ -150,7 +150,7 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return words for the place of one text of the claim, such as its equation (``key`` "claim"), for messages."""
+        """Return words that name one text of the claim in messages, by its ``key``: "claim" for the equation."""
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":

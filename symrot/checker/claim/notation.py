@@ -22,10 +22,10 @@ class Notation(Protocol):
     """The notation of the user's text, such as LaTeX or SymPy syntax: answers are written in it too."""
 
     def formula(self, node: Node) -> str:
-        """Return the text of a formula."""
+        """Return the text of a formula's tree in this notation."""
 
     def relation(self, relation: Relation) -> str:
-        """Return the text of an equation or inequality."""
+        """Return the text of an equation or inequality in this notation."""
 
     def rewritten(self, source: str) -> str:
         """Return an equation in SymPy syntax as text in this notation. Words after the equation stay unchanged."""
@@ -86,7 +86,7 @@ class TypedNotation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return a formula inside ``diff(..)`` with ``f(t)`` for each function of time; a bare ``f`` is a constant."""
+        """Return a formula inside ``diff(..)`` with ``f(t)`` for a function f of time; f alone would be a constant."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 

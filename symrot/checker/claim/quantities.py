@@ -56,7 +56,10 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether a product has only the letter, numbers and sines, as ``I*sin(theta)``: then I is imaginary."""
+    """Return whether ``letter`` is the imaginary unit in a product, as I in ``2*I*sin(x)``.
+
+    It is if all other factors are numbers, sines and cosines, with at least one sine or cosine.
+    """
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
@@ -83,7 +86,7 @@ def _is_exponential(node: Node, base: str) -> bool:
 
 
 def with_natural_base(node: Node) -> Node:
-    """Return a tree with exp(x) in place of e**x."""
+    """Return a tree in which e is the base of the exponential function: exp(x) for e**x, exp(1) for e alone."""
     if node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e"):
         return Node("call", "exp", (with_natural_base(node.args[1]),), node.span)
     if (node.kind, node.value) == ("name", "e"):

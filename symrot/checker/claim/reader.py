@@ -87,7 +87,7 @@ class Chain:
 
     @property
     def links(self) -> tuple[Relation, ...]:
-        """The relations between neighbouring sides. In ``I_x = I_y = F`` each name is related to the formula F."""
+        """The relations between neighbouring sides; but in ``I_x = I_y = F`` each name is related to the formula F."""
         formulas = [side for side in self.sides if side.kind != "name"]
         rights = list(self.sides[1:])
         if formulas and set(self.signs) == {"=="}:
@@ -109,7 +109,7 @@ class Reading:
     doubts : tuple of Doubt
         The ambiguous places of the text.
     notes : tuple of str
-            Sentences about how the text is read.
+        Sentences about how the text is read.
     spelling : dict
         Name in the trees -> name as it was typed, where they differ.
     timed : frozenset of str
@@ -165,11 +165,11 @@ class _Text:
         Parameters
         ----------
         whole : bool
-                    True to keep a word such as ``mgl`` as one name; False to split it into names where that is usual.
+            True to keep a word such as ``mgl`` as one name; False to split it into names where that is usual.
         as_sympy : bool
             Whether ``dx/dt`` is a quotient of two names.
         flips : collection of (str, int)
-                    The keys of ambiguous places (:class:`Doubt`) that get their less usual meaning.
+            The keys of ambiguous places (:class:`Doubt`) that get their less usual meaning.
         one_side : bool
             Whether the text is a formula without a relation.
         """
@@ -519,7 +519,7 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names F and d of ``F·d = F d cos θ``, whose scalar product is given by their lengths."""
+    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors."""
     texts = [token.text for token in tokens if token.kind != "end"]
     for sides in (texts, texts[::-1]):
         first, dot, second, sign, *rest = [*sides, *[""] * 4]

@@ -98,7 +98,10 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with as few brackets as its meaning allows; parsing it gives the same tree again."""
+    """Return the text of a tree, with as few brackets as its meaning allows; parsing it gives the same tree again.
+
+    ``binding`` is the rank of the operation around the tree, such as a product; a sum in a product gets brackets.
+    """
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT
@@ -148,7 +151,7 @@ _WRITE: dict[str, Callable[[Node], str]] = {
 
 
 def with_names(node: Node, names: Mapping[str, str]) -> Node:
-    """Return a tree in which symbols have other names; functions of time keep theirs."""
+    """Return a tree with other names of symbols: ``names`` maps old to new ones. Functions of time keep theirs."""
     if node.kind == "name" and node.value in names:
         return replace(node, value=names[str(node.value)])
     return replace(node, args=tuple(with_names(child, names) for child in node.args))

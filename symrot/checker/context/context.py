@@ -95,7 +95,7 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether the words are about a name, or about the vector or matrix of which the name is an entry."""
+        """Return whether the words are about ``name``, or about the vector or matrix of which it is an entry."""
         stem = re.sub(r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
@@ -458,7 +458,11 @@ def read_sequence(words: str, prefix: str = "") -> str:
 
 
 def _with_case(letters: str, kinds: Sequence[str]) -> str:
-    """Return the letters of a sequence in upper case for moving axes, in lower case for fixed ones."""
+    """Return the three letters of a sequence in upper case for moving axes, in lower case for fixed axes.
+
+    ``kinds`` are the words that state which: "body", "space", "intrinsic" and so on. Without words, the letters stay as
+    they are; the result is an empty text for contradicting words.
+    """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:
         return ""
@@ -466,7 +470,7 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
 
 
 def _check_consistency(context: Context, prefix: str) -> None:
-    """Raise InputError if statements of the context contradict each other, or the usual meaning of a name."""
+    """Raise InputError if statements of the context contradict each other, or the usual unit of a name."""
     seen: dict[str, Meaning] = {}
     for meaning in context.meanings:
         for name in meaning.names:

@@ -234,9 +234,10 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the formulas that its context means; words that nothing uses do not matter here.
+    """Return the verdict on a claim by comparison with the known formulas that its context means.
 
-    ``verdict`` is the verdict so far; it is returned where the context adds nothing.
+    ``verdict`` is the verdict so far; it is returned where the context adds nothing. Whether all words of the context
+    are used is checked afterwards, by the caller.
     """
     context, quantity = claim.context, _name(named)
     stated = _stated_by_name(named)
@@ -385,9 +386,10 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield each rotation matrix among the known formulas transposed, with the decision on the matrix itself.
+    """Yield the transpose of each rotation matrix among the known formulas, with the decision on the matrix.
 
-    A known matrix maps body components to space components; the author of a claim may mean the inverse map.
+    A known matrix maps body components to space components; the author of a claim may mean the inverse map, which is
+    its transpose.
     """
     for candidate, decision in decisions:
         if candidate.known.name.startswith("rotation matrix"):
@@ -498,7 +500,7 @@ def _diagnosed(
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
     """Return the fault by which a claim's formula differs from the known formula ``candidate``, and repairs.
 
-    ``decision`` is the one that they differ. The repairs turn the claim's formula into the known one; they may be none.
+    ``decision`` says that they differ. The repairs turn the claim's formula into the known one; there may be none.
     """
     none = Diagnosis("none", "")
     try:
@@ -559,7 +561,7 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _root(square: Expr) -> Expr:
-    """Return the square root of a formula whose symbols are positive, such as masses and lengths."""
+    """Return the square root of ``square``, simplified as for positive symbols such as masses: a for a^2."""
     positive = {symbol: Dummy(positive=True) for symbol in square.free_symbols}
     return sqrt(square.xreplace(positive)).xreplace({new: old for old, new in positive.items()})
 

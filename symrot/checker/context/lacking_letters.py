@@ -35,9 +35,9 @@ def with_lacking_letters(
     """Return the verdict "doubtful" if a claim's formula is a derived one without a term or a factor; otherwise None.
 
     ``value`` is the claim's formula. ``meant`` are the derived formulas whose names the context states word by word,
-    and their values. A term lacks in ``m*g*l`` if ``m*g*l + k*x`` is derived: with zero for k, which the claim does not
-    have, both are equal. A factor lacks if the quotient of the two has only letters that the claim does not have.
-    ``assignments`` yields the ways to assign letters of the claim to the symbols of a derived formula.
+    and their values. The claim ``m*g*l`` lacks a term of the derived ``m*g*l + k*x``: both are equal once k, which the
+    claim does not have, is zero. A claim lacks a factor if the derived formula divided by ``value`` has no letter of
+    the claim. ``assignments`` yields the ways to assign letters of the claim to the symbols of a derived formula.
     """
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:

@@ -287,7 +287,9 @@ _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|al
 
 
 def unused_words(words: str) -> str:
-    """Return the words of a text that carry meaning, without articles, prepositions and the like; often none are left.
+    """Return the words that carry meaning in a text that is left over, without articles, prepositions and the like.
+
+    If there are any, symrot does not understand all of what the user said.
 
     Examples
     --------

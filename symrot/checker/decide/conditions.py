@@ -34,13 +34,13 @@ MOST_TERMS, LARGEST_DEGREE = 400, 24
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return conditions of the kinds that textbooks state, each of which makes all residuals (left - right) vanish.
+    """Return conditions of the kinds that textbooks state, such as ``A == B``, each of which makes the claim true.
 
     Parameters
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The reduced numerators of the residuals that are not zero.
+        The reduced numerators of the residuals (left - right) that are not zero.
     sides : sequence of (Expr, Expr)
         Left and right side of the entry that each residual belongs to.
     entries : int
@@ -60,7 +60,10 @@ def requirements(
 
 
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
-    """Return the irreducible factors common to all residuals; an empty list if the residuals are too large."""
+    """Return the irreducible factors that all residuals have in common: where one of them is zero, the claim is true.
+
+    The list is empty if the residuals, whose ``numerators`` are given, are too large to be factored.
+    """
     smallest = min(numerators, key=len)
     if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
         return []
@@ -94,7 +97,10 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 
 
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
-    """Return the condition ``factor = 0`` if textbooks state conditions of its kind, else None."""
+    """Return the condition ``factor == 0`` if textbooks state conditions of its kind, else None.
+
+    The kinds are: a unit norm, equal moments of inertia or a sum of two equal to the third, no product of inertia.
+    """
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
     if not all(n in leaves and (leaves[n].is_Symbol or isinstance(leaves[n], AppliedUndef)) for n in places):
@@ -113,9 +119,10 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` if the factor states one; None for a sum of moments.
+    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` for a factor such as I1 - I2 or I1 + I2 - I3.
 
-    A sum of moments of inertia is positive: it cannot be zero.
+    ``names`` are the moments in the factor, ``formula`` the factor as an expression. Return None for a sum of moments
+    of inertia: it is positive, so that it cannot be zero.
     """
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
@@ -140,7 +147,10 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return the condition that all products of inertia are zero, if it makes the claim true; else an empty list."""
+    """Return, in a list, the condition that all products of inertia are zero, if it makes the claim true; else [].
+
+    A condition counts only if one side of each entry has none of the products: its author left them out.
+    """
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -160,10 +170,10 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
-    Let a residual be ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or
-    ``-a/b`` everywhere. The claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is
-    zero too, and the claim holds; so the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0``
-    holds wherever the claim is defined.
+    An example is ``x >= 0`` for ``sqrt(x**2) == x``. Let a residual, whose numerator is one of ``numerators``, be ``a +
+    b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or ``-a/b`` everywhere. The claim
+    says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is zero too, and the claim holds; so
+    the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0`` holds wherever the claim is defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -186,6 +196,9 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return polynomials (a, b) with poly = a + b*generator."""
+    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the number ``place``.
+
+    a does not contain the generator.
+    """
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero

@@ -87,7 +87,10 @@ def distinct_factors(poly: PolyElement) -> list[PolyElement]:
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:
-    """Return the constraints in a ring of formulas, including all divisors that have been read into the ring so far."""
+    """Return what is known of the real points at which the formulas in a ring are to hold, as polynomial constraints.
+
+    They include all divisors that have been read into the ring so far.
+    """
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
     free = {*symbols.values(), *_free_angles(ring)}
@@ -133,7 +136,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the sine and cosine of each angle that may have any value, independent of all other symbols.
+    """Yield the numbers of the sine and cosine of each angle that may have any value, independent of all other symbols.
 
     Such an angle is proportional to a symbol, or a function of time, that occurs nowhere else. Its time derivatives may
     occur, since at one instant they are independent of the value of the function.

@@ -121,9 +121,9 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" for an open equation that is proven with the signs that its conditions give to its symbols.
+    """Return the decision "true" on an undecided equation if it is proven for the signs that its conditions require.
 
-    Otherwise return the given decision. ``abs(x)`` is x in ``asech(x) == acosh(1/x)``, whose left side needs x > 0.
+    Otherwise return ``decision``. In ``asech(x) == acosh(1/x)`` the left side needs x > 0, so that ``abs(x)`` is x.
     """
     known = positive_symbols(decision.conditions)
     if not known or equation.hypotheses:
@@ -145,7 +145,7 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision whose conditions do not exclude points at which the equation is true.
+    """Return a conditional decision without divisors in its conditions at whose zeros the equation is true.
 
     The proof of ``sqrt(x**2*y**2) == x*y`` divides by ``abs(y)``, but the equation is true for ``y = 0`` too.
     """
@@ -153,7 +153,10 @@ def _without_needless(decision: Decision, equation: Equation) -> Decision:
 
 
 def _without_divisor(condition: Any, equation: Equation) -> Any:
-    """Return a condition on a sign without its divisor, if the equation is true where the divisor is zero."""
+    """Return a condition with x in place of ``x/abs(y)``, if the equation is true where the divisor y is zero.
+
+    Other conditions are returned unchanged.
+    """
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
     signs = []
@@ -165,9 +168,9 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 
 
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
-    """Return whether an equation is true at each zero of a formula.
+    """Return whether an equation is proven to be true at each zero of a polynomial ``formula`` in one symbol.
 
-    Also return False if the formula has several symbols, is no polynomial, or has an irrational zero.
+    Return False if the formula has several symbols, is no polynomial, or has an irrational zero.
     """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
@@ -177,7 +180,7 @@ def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
 
 
 def _is_true_at(point: dict[Expr, Expr], equation: Equation) -> bool:
-    """Return whether both sides of an equation are defined and equal at a point."""
+    """Return whether both sides of an equation are defined and equal at a point, given by the values of symbols."""
     divisors, radicands = (
         tuple(formula.subs(point) for formula in formulas) for formulas in (equation.divisors, equation.radicands)
     )
@@ -276,7 +279,10 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions that a proof needs, in alphabetical order, without those that are hypotheses."""
+        """Return the conditions that a proof in ``rings`` needs, such as ``x != 0``, in alphabetical order.
+
+        Conditions that are hypotheses of the claim are left out.
+        """
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -302,7 +308,10 @@ class _ClaimCase(Case):
         return Decision("undecided", self.conditions, reason=reason)
 
     def can_hold(self, requirement: Requirement) -> bool:
-        """Return whether a point is known at which a condition holds and the sides are real numbers."""
+        """Return whether a point is known at which the condition ``requirement`` holds and both sides are real numbers.
+
+        A condition that holds nowhere is not offered.
+        """
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
         if not self.hypotheses.consistent_with(requirement.zeros):
             return False
@@ -313,16 +322,19 @@ class _ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
-    """Read the formulas that are nonzero by a hypothesis into the ring, before any other divisor is read."""
+    """Read the formulas that are nonzero by a hypothesis into the ring, so that proofs may divide by them.
+
+    This comes before any other divisor is read: ``case.nonzero_factors`` then has the numbers of just these factors.
+    """
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
     case.nonzero_factors = set(range(len(case.ring.ratios.factors)))
 
 
 def domain_of_text(case: _ClaimCase) -> None:
-    """Add the divisors of the text to the ring.
+    """Add the divisors of the claim's text to the ring, as the proof must not lose the condition that they are nonzero.
 
-    Raise InputError if there is no point where both sides are real numbers.
+    Raise InputError if there is provably no point where both sides are real numbers.
     """
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
@@ -355,7 +367,10 @@ def branch(case: _ClaimCase) -> Decision | None:
 
 
 def entail(case: _ClaimCase) -> Decision | None:
-    """Return "true" for a claim that follows from its hypotheses, else None. Refuse hypotheses that hold nowhere."""
+    """Return "true" for a claim that follows from its hypotheses, else None.
+
+    Raise InputError if the hypotheses hold at no real point.
+    """
     if not case.lacks_evidence:
         return None
     if case.hypotheses.entails(case.numerators):
@@ -402,9 +417,10 @@ STAGES = (
 
 
 def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Make a true decision conditional if it assumes that the base of a power with a symbolic exponent is positive.
+    """Return a decision "true" as "conditional" if it assumes a positive base of a power with letters in the exponent.
 
-    ``a**b`` may have a value for a negative a too, if b is a whole number; nothing is proven about that.
+    For ``a**b``, the condition is a > 0: the power may have a value for a negative a too, if b is a whole number, and
+    nothing is proven about that. Every other decision is returned unchanged.
     """
     bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
     if not bases or decision.verdict != "true":
@@ -420,11 +436,11 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Make a decision conditional if the sides differ at a point that the conditions of its proof exclude.
+    """Turn a decision "true" into "conditional" if the sides differ at a point that its proof excludes.
 
-    All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the
-    proof vanishes are equal in between too. atan2 jumps where its first argument is zero and its second argument is
-    negative.
+    If no such point is known, the decision is returned unchanged. All functions but atan2 are continuous where they are
+    defined: sides that are equal where no divisor of the proof vanishes are equal in between too. atan2 jumps where its
+    first argument is zero and its second argument is negative.
     """
     symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
     cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
@@ -444,9 +460,10 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield points with simple coordinates, and points on the cuts of atan2, where its first argument is zero.
+    """Yield points with simple coordinates, first as they are, then each moved to the cuts of atan2.
 
-    A point on a cut is found only if the argument is linear in a symbol.
+    ``cuts`` are the first arguments of atan2, which are zero on its cut. A point is moved only along a symbol in which
+    the argument is linear.
     """
     for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
         point = dict(zip(symbols, map(Rational, values), strict=True))
@@ -472,9 +489,9 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
-    """Return the conditions under which sides and hypotheses are real numbers, as their text has them.
+    """Return the conditions under which sides and hypotheses of a claim are real numbers, as its text has them.
 
-    The text may have divisors and roots that SymPy has cancelled.
+    The text may have divisors and roots that SymPy has cancelled: ``x/x`` needs x != 0.
     """
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
@@ -493,7 +510,9 @@ def _stated_needs(equation: Equation) -> list[Need]:
 
 
 def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr], size: int) -> Decision:
-    """Return the decision on an equation with powers that are too large to be expanded.
+    """Return the decision on an equation whose powers are too large to be expanded, such as ``(a - x)**6000``.
+
+    ``lefts`` and ``rights`` are the entries of its sides, and ``size`` is its degree, for the message.
 
     Raises
     ------
@@ -528,9 +547,10 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must be nonzero, by their texts, without those that never vanish or are powers of others.
+    """Return those formulas that must be nonzero, by their texts, that no other one implies.
 
-    ``sin(a)**2 + cos(a)**2`` never vanishes; ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` is a power of cos(b).
+    Left out are formulas that never vanish, as ``sin(a)**2 + cos(a)**2``, and powers of others, as
+    ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` if cos(b) is there.
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -546,7 +566,10 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the one of two formulas that has the shorter text; if one has far fewer parts, return that one."""
+    """Return the shorter one of two formulas for the same divisor, for a condition that people can read.
+
+    It is the one with the shorter text; but if one has far fewer symbols and operations, it is that one.
+    """
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few
@@ -560,9 +583,10 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return the signs that make the residuals (left - right) vanish, and the rings in which this is proven.
+    """Return the conditions on signs that make a claim true, and the rings of formulas in which this is proven.
 
-    The list is empty if no condition is needed; it is None if no such condition is known.
+    ``numerators`` are those of the residuals (left - right). The list is empty if no condition is needed; it is None if
+    no such condition is known.
     """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None

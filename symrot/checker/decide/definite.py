@@ -10,9 +10,9 @@ MOST_TERMS_OF_SQUARE = 40
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula shows that it is never negative, as that of a sum of squares does.
+    """Return whether the form of a real formula shows that it is never negative: True for ``x**2 + abs(y)``.
 
-    Its square roots are assumed to be real.
+    Its square roots are assumed to be real. False means only that the form does not show it.
     """
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True

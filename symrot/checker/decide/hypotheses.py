@@ -75,9 +75,9 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield points that obey all constraints, from ``attempts`` random drawings; a drawing may fail.
+        """Yield points that obey all constraints: one for each of the ``attempts`` random drawings that succeeds.
 
-        Each point is drawn once and stored.
+        Each point is drawn once and stored for later calls.
         """
         number = 0
         while number < attempts:
@@ -132,7 +132,10 @@ class Hypotheses:
                 )
 
     def refuse_if_nowhere(self) -> None:
-        """Raise InputError if the range of a formula shows that the sides are real numbers nowhere."""
+        """Raise InputError if the ranges of formulas show that the sides are real nowhere, as ``sqrt(-1 - x**2)``.
+
+        Raise it, too, if they show that a hypothesis holds nowhere.
+        """
         for need in self.needs:
             if fails_everywhere(need):
                 raise InputError(f"the sides are real numbers nowhere: {_need_text(need)} holds at no real point")
@@ -143,9 +146,9 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` are proven to exist near every point.
+        """Return whether points that meet all ``needs`` are proven to exist, near every point, without a search.
 
-        They are if all needs are nonzero divisors, and :func:`is_dense` is true of the formulas.
+        They are if each need says that a divisor is nonzero, as ``x != 0``, and :func:`is_dense` is true of the ring.
         """
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
@@ -172,9 +175,9 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values of symbols at a point.
+        """Return the values of symbols at ``point``, which has values for the unknowns of the ring.
 
-        An angle theta is one of them: the point has values for its sine and cosine, of which atan2 gives theta.
+        An angle theta has a value too: the point has those of its sine and cosine, of which atan2 gives theta.
         """
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
@@ -184,7 +187,10 @@ class Hypotheses:
         return values
 
     def _values_for(self, formulas: Sequence[Expr], point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values at a point, and simple values for the symbols that occur in no hypothesis."""
+        """Return the values at a point of all symbols in ``formulas``.
+
+        Symbols that occur in no hypothesis get simple values.
+        """
         values = self._values(point)
         for number, leaf in enumerate(leaves_of(formulas)):
             values.setdefault(leaf, OTHER_VALUES[number % len(OTHER_VALUES)])
@@ -210,12 +216,18 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses imply that polynomials vanish: provably, at all real points that obey them."""
+        """Return whether the hypotheses imply that all ``numerators``, those of left - right, provably vanish.
+
+        Then the claim follows. The result is False without hypotheses.
+        """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
-        """Return False if formulas provably cannot all be zero under the hypotheses, otherwise True."""
+        """Return False if the formulas ``zeros`` provably cannot all be zero under the hypotheses; otherwise True.
+
+        ``zeros`` are the formulas of a condition: one that contradicts the hypotheses is not offered.
+        """
         if not self.present or not zeros:
             return True
         target = self.constraints.ring
@@ -223,7 +235,10 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return a search for counterexamples that drops points at which a divisor is zero."""
+        """Return a search for counterexamples that also drops points at which a divisor of the claim is zero.
+
+        ``search`` is the search for points at which the sides differ.
+        """
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
@@ -238,13 +253,20 @@ class Hypotheses:
     def near_witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
     ) -> Counterexample | None:
-        """Return a counterexample among the first few points that obey the hypotheses, or None."""
+        """Return a counterexample among the first few points that obey the hypotheses, or None.
+
+        The arguments are those of :meth:`witness`.
+        """
         return self.witness(ring, left, right, entry, FEW)
 
     def witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int = ATTEMPTS
     ) -> Counterexample | None:
-        """Return an exact point that obeys the constraints and where two sides differ, or None."""
+        """Return a counterexample, or None: an exact point that obeys the hypotheses and where left and right differ.
+
+        ``entry`` is (row, column) of the compared matrix entry, for the result, and ``attempts`` the number of random
+        drawings.
+        """
         if not self.present or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
@@ -277,12 +299,12 @@ class Hypotheses:
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
-        """Return the numerator and the denominator of a side of the claim, as polynomials."""
+        """Return the numerator and the denominator of a side of the claim, as polynomials in the constraints' ring."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
-        """Yield the symbols and angles that the claim uses, with their values at a point.
+        """Yield the symbols and angles in ``used``, the parts of the claim's formulas, with their values at a point.
 
         An angle that is no multiple of pi/2 is stated by its cosine and sine.
         """

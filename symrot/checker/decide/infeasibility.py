@@ -87,7 +87,10 @@ class _Prover:
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
     def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
-        """Return the reason why polynomials cannot vanish together; raise ``_Undecided`` if none is known."""
+        """Return the reason why the polynomials ``zeros`` cannot all vanish; raise ``_Undecided`` if no proof is known.
+
+        ``rounds`` is the number of Groebner bases that may still be computed.
+        """
         self.cases += 1
         if self.cases > MOST_CASES or rounds == 0:
             raise _Undecided
@@ -119,7 +122,7 @@ class _Prover:
         return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
-        """Return the different factors of a polynomial that may be zero somewhere.
+        """Return those different factors of a polynomial that may be zero somewhere: x - y for ``(x^2 + 1)*(x - y)``.
 
         The list is empty if no factor can be zero, and for the polynomial zero.
         """
@@ -134,8 +137,8 @@ class _Prover:
     def parts(self, poly: PolyElement) -> list[PolyElement]:
         """Return simpler polynomials, all of which vanish wherever ``poly`` does.
 
-        They are its terms, without exponents, if all terms have one sign; the linear forms of :meth:`squares`
-        if it is a sum of squares; otherwise ``poly`` itself.
+        They are its terms, without exponents, if all terms have one sign: x and y for ``x^2 + y^4``. They are the
+        linear forms of :meth:`squares` if it is a sum of squares. Otherwise the result is ``poly`` itself.
         """
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
@@ -147,7 +150,10 @@ class _Prover:
     # -- signs --------------------------------------------------------------------------------------------------------
 
     def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
-        """Return +1 for a term that is never negative, -1 for one that is never positive, 0 for any other term."""
+        """Return +1 for a term that is never negative, -1 for one that is never positive, 0 for any other term.
+
+        ``mono`` has the exponents of the unknowns, whose signs may be assumed, and ``coefficient`` is the number.
+        """
         sign = 1 if coefficient > 0 else -1
         for place, power in enumerate(mono):
             if power % 2 and place in self.constraints.negative:
@@ -221,7 +227,10 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether a polynomial is nonzero for all values that its unknowns can have by their bounds."""
+        """Return whether a polynomial is nonzero for all values that its unknowns can have: x - 2 if x^2 + y^2 = 1.
+
+        The bounds of the unknowns follow from the constraints and from the equations ``zeros``.
+        """
         bounds = self.bounds(zeros)
         low, high = Fraction(0), Fraction(0)
         for mono, coefficient in poly.items():
@@ -230,9 +239,10 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return bounds (low, high) of unknowns by their numbers in the ring.
+        """Return the bounds (low, high) of unknowns, by the numbers of the unknowns in the ring.
 
-        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1.
+        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1. ``zeros``
+        are polynomials that vanish besides the constraints.
         """
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
@@ -256,7 +266,10 @@ def _fraction(value: Any) -> Fraction:
 
 
 def _root_above(value: Fraction, power: int) -> Fraction:
-    """Return a rational upper bound of a root of a positive number; the root itself if it is an integer."""
+    """Return a rational number at least as large as the root of order ``power`` of a positive number.
+
+    It is the root itself if that is an integer.
+    """
     size = Fraction(1)
     while size**power < value:
         size *= 2

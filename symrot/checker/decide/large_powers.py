@@ -45,7 +45,10 @@ DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degrees that formulas have once expanded, in symbols, sines and cosines."""
+    """Return an upper bound on the degree that any of ``formulas`` has when it is multiplied out.
+
+    The degree counts symbols, sines and cosines. It shows early that an expansion would take too long.
+    """
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)
     known: dict[Expr, int] = {}
@@ -57,7 +60,11 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, for each symbol in an angle or exponent, the greatest common divisor of its coefficients there."""
+    """Return, for each symbol in an angle or exponent, the largest number of which all its coefficients are multiples.
+
+    For ``sin(x/2)`` and ``sin(3*x)`` this is 1/2 for x: then the degree of ``sin(3*x)``, in the sine and cosine of x/2,
+    is 6.
+    """
     arguments = {
         node.args[0]
         for formula in formulas
@@ -68,7 +75,10 @@ def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
 
 
 def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
-    """Return an upper bound on the degree of a formula's numerator plus that of its denominator."""
+    """Return an upper bound on the degree of a formula's numerator plus that of its denominator.
+
+    ``known`` stores results; ``bases`` is explained in :func:`_multiple`.
+    """
     if node not in known:
         below = [_degree(part, known, bases) for part in node.args]
         if isinstance(node, Mul):
@@ -120,7 +130,10 @@ class ShorterPowers:
 
 
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
-    """Return formulas with letters in place of large powers; None if there are none, or too many different bases."""
+    """Return formulas with letters in place of large powers, such as Z for ``(a - x)**6000``.
+
+    Return None if no power is large, or if the large ones have too many different bases.
+    """
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
     large = {node for node in powers if abs(node.exp) > LARGEST_EXPANDED}
     bases: dict[Expr, list[Expr]] = {}
@@ -152,7 +165,10 @@ def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
 
 
 def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
-    """Return a point with small numbers at which the sides have different values and all needs are met, or None."""
+    """Return a point with small numbers at which the sides differ and all conditions ``stated`` are met, or None.
+
+    The sides must also have real values there.
+    """
     leaves = leaves_of([left, right, *(need.formula for need in stated)])
     needs = [*needs_of([left, right]), *stated]
     for numbers in islice(product(VALUES, repeat=len(leaves)), MOST_POINTS):
@@ -167,7 +183,10 @@ def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Coun
 
 
 def _written(value: Any, digits: int) -> str:
-    """Return an interval as a number: an exact short integer, or the first digits of its midpoint."""
+    """Return an interval around a value as text: a short integer if it is exact, else the first ``digits`` digits.
+
+    Digits are followed by dots, as in ``3.1416..``.
+    """
     middle = mpf(value.mid)
     if value.a == value.b and middle == int(middle) and len(str(int(middle))) <= LONGEST_WHOLE_NUMBER:
         return str(int(middle))

@@ -48,12 +48,12 @@ def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
 
 
 def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
-    """Return whether the conditions ``signs`` follow from the conditions ``known``."""
+    """Return whether the conditions ``signs`` follow from the conditions ``known``: x*y >= 0 from x > 0 and y > 0."""
     return set(_texts(_Conditions.of([*known, *signs]))) == set(_texts(_Conditions.of(known)))
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts: first its requirements, then the other ones.
+    """Return the conditions of a decision as texts, such as ``"x >= 0"``: first its requirements, then the other ones.
 
     If there is only one requirement, conditions that follow from it are left out.
     """
@@ -130,7 +130,10 @@ def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
 
 
 def _with_plain_functions(formula: Expr) -> Expr:
-    """Return a formula with arguments of functions in normal form: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
+    """Return a formula with the arguments of its functions in normal form, so that SymPy can evaluate these.
+
+    ``cos(sin(x)/cos(x) - tan(x))`` becomes ``cos(0)``, which is 1.
+    """
     try:
         return with_plain_arguments([formula])[0][0]
     except InputError:
@@ -211,7 +214,7 @@ def _exceeds_absolute(factor: Expr) -> bool:
 
 
 def _is_definite(factor: Expr) -> bool:
-    """Return whether a factor is a quadratic polynomial of one symbol without real zeros and with a positive value."""
+    """Return whether a factor is a quadratic polynomial in one symbol that is always positive, as ``x^2 + x + 1``."""
     symbols = factor.free_symbols
     if len(symbols) != 1 or not factor.is_polynomial(*symbols):
         return False
@@ -372,7 +375,7 @@ class _Conditions:
         return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
 
     def _new_range(self, quantity: Expr) -> _Range:
-        """Return the range that a quantity has by its form: -1 to 1 for a sine, nonnegative for a square."""
+        """Return the range that ``quantity`` has by its form alone: -1 to 1 for a sine, 0 and above for a square."""
         if isinstance(quantity, sin | cos):
             return _Range(Integer(-1), Integer(1))
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
@@ -421,9 +424,10 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the other conditions imply the range of cos(u), so that it need not be printed.
+        """Return whether other conditions imply the range ``own`` of ``quantity``, cos(u); then the text leaves it out.
 
-        A cosine is between -1 and 1. If cos(u/2) is nonzero, it is not -1; if sin(u/2) is nonzero, it is not 1.
+        A cosine is between -1 and 1. If cos(u/2) is nonzero, it is not -1; if sin(u/2) is nonzero, it is not 1. For
+        other quantities the result is False.
         """
         if not isinstance(quantity, cos):
             return False
@@ -435,7 +439,10 @@ class _Conditions:
         return below and above
 
     def _angle_excludes(self, function: Expr) -> bool:
-        """Return whether the range of an angle lies between two neighbouring zeros of its sine or cosine."""
+        """Return whether ``function``, a sine or cosine, is nonzero for all values in the range of its angle.
+
+        This is so for sin(x) under the condition 0 < x < pi.
+        """
         angle = _bound(function.args[0])
         own = self.ranges.get(angle.quantity)
         if own is None or own.low is None or own.high is None or angle.slope < 0 or angle.root != 0:
@@ -497,7 +504,10 @@ def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
 
 
 def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether a condition follows from the signs of its symbols."""
+    """Return whether the condition ``formula sign``, as ``x + y > 0``, follows from the signs of its symbols.
+
+    ``positive`` has, for each symbol of known sign, a SymPy symbol that has this sign as its assumption.
+    """
     value = formula.xreplace(dict(positive))
     if sign == ">= 0":
         return surely_nonnegative(value)
@@ -505,7 +515,10 @@ def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
 
 
 def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether the range of a compound quantity, such as x + y >= 0, follows from the signs of its symbols."""
+    """Return whether the range ``own`` of a compound quantity follows from the signs of its symbols.
+
+    So x + y >= 0 need not be printed beside x >= 0 and y >= 0. ``positive`` is that of :func:`_holds`.
+    """
     if quantity.is_Symbol or own.high is not None or own.low is None:
         return False
     return _holds(quantity - own.low, ">= 0" if own.low_closed else "> 0", positive)

@@ -75,7 +75,7 @@ def _by_form(formula: Expr, strict: bool) -> bool:
 
 
 def _by_factors(formula: Expr, strict: bool) -> bool:
-    """Return whether the signs of its factors prove that a product is nonnegative (or positive, if ``strict``)."""
+    """Return whether the signs of its factors prove that a formula is nonnegative, or positive if ``strict``."""
     negative = False
     for factor in formula.args:
         if _one(factor, strict):
@@ -97,7 +97,10 @@ def _one(factor: Expr, strict: bool) -> bool:
 
 
 def _by_range(formula: Expr, strict: bool) -> bool:
-    """Return whether the ranges of its terms prove that a formula is nonnegative (or positive, if ``strict``)."""
+    """Return whether the ranges of its terms prove that a formula is nonnegative, as for ``2 + sin(x)``.
+
+    With ``strict`` it must be proven positive.
+    """
     low, _ = _bounds(formula)
     if low is None:
         return False
@@ -175,7 +178,10 @@ def _without_absolute(formula: Expr) -> bool:
 
 
 def _by_roots(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial in one unknown never changes its sign, by counting its real roots."""
+    """Return whether counting real roots proves that a polynomial in one unknown is never negative.
+
+    With ``strict`` it must be proven positive.
+    """
     symbols = formula.free_symbols
     if len(symbols) != 1 or not formula.is_polynomial(*symbols):
         return False
@@ -203,7 +209,10 @@ def _sign(unknown: Expr) -> int:
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
-    """Return the symmetric matrix of a quadratic polynomial in the vector (1, unknowns)."""
+    """Return the symmetric matrix of a quadratic polynomial in the vector (1, x, y, ..) of its unknowns x, y, ...
+
+    For x^2 + 4 x it is [[0, 2], [2, 1]].
+    """
     size = len(poly.gens) + 1
     gram = [[S.Zero] * size for _ in range(size)]
     for powers, coefficient in poly.terms():
@@ -215,9 +224,10 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 
 
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
-    """Return whether a quadratic form is never negative, and never zero if ``strict``, by completing squares.
+    """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
 
-    Linear terms with a coefficient >= 0 in a nonnegative unknown are left out: they only increase the value.
+    ``gram`` is the matrix of the form, and ``sign`` returns the assumed sign of an unknown by its number. Linear terms
+    with a coefficient >= 0 in a nonnegative unknown are left out: they only increase the value.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):

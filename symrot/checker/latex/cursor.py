@@ -47,7 +47,7 @@ class Names:
     """The names that a claim declares, by kind.
 
     ``matrices`` includes vectors; ``columns`` lists those matrices again that have one column. ``others`` are names of
-    no such kind. If ``implied``, undeclared names are allowed too.
+    scalars that the claim defines by a formula. If ``implied``, undeclared names are allowed too.
     """
 
     symbols: Collection[str] = ()

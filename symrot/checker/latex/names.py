@@ -151,7 +151,7 @@ class NamesPart(SumsPart):
         return pieces
 
     def pieces(self, items: tuple[tree.Node, ...]) -> Iterator[str]:
-        """Yield the letters and numbers of a subscript, upright or not; a comma becomes ``_``."""
+        """Yield the letters and numbers of the ``items`` of a subscript, upright or not; a comma becomes ``_``."""
         for item in items:
             if isinstance(item, tree.Row):
                 yield from self.pieces(item.items)
@@ -279,7 +279,10 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Parse a letter, a number or a command, or a symbol with a mark such as a hat; return its tree."""
+        """Parse a letter, a number or a command, or a symbol with a mark such as a hat; return its tree.
+
+        ``ending`` is added to the name, such as "_bar" for a letter under a bar.
+        """
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
             return self.base(item)
@@ -312,7 +315,7 @@ class NamesPart(SumsPart):
         return self.called(OPERATORS[item.text])
 
     def called(self, name: str) -> Node:
-        """Parse the arguments of a function, in brackets or as one factor without brackets; return the call."""
+        """Parse the arguments of the function ``name``: ``(x, y)`` in brackets, or one factor; return the call."""
         opening = self.peek()
         if opening.text not in CLOSING:
             return Node("call", name, (self.factor(),))

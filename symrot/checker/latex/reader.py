@@ -104,7 +104,7 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return the reading of a LaTeX text in which the ambiguous places ``flips`` have their less usual meaning."""
+    """Return one reading of a LaTeX text; ``flips`` are the keys of ambiguous places with their less usual meaning."""
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]

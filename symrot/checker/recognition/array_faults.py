@@ -41,7 +41,7 @@ class ArrayFault(NamedTuple):
 
 
 def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
-    """Return whether a formula contains the name of a vector, matrix or quaternion, or a product of vectors."""
+    """Return whether a formula has the name of a vector, matrix or quaternion, or calls an operation on vectors."""
     return any(
         (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
         for _, node in walk(formula)
@@ -49,7 +49,7 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the single edits of a formula with their values, sorted by the sum of the entries.
+    """Return the single edits of a formula with their values, sorted by the sum of the entries at the first test point.
 
     Of a formula without arrays, these are only the edits that add brackets.
     """
@@ -63,7 +63,7 @@ def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> lis
 
 
 def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
-    """Yield the edits after which a formula has the values that it should have."""
+    """Yield those edits of ``faults`` after which the formula has the values ``needed`` at the test points."""
     total = _total(needed)
     slack = CLOSE * (abs(total) + max(map(abs, entries_of(needed[0]))))
     for fault in islice(faults, bisect_left(faults, total - slack, key=lambda fault: fault.total), None):
@@ -97,7 +97,7 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
 
 
 def _brackets(formula: Node) -> Iterator[Edit]:
-    """Yield the formula with brackets that may be missing."""
+    """Yield edits that put brackets into a sum: ``(a - b)*c`` for ``a - b*c``."""
     for path, node in walk(formula):
         if node.kind == "sum" and len(node.args) <= MOST_TERMS:
             for made in bracketed(node.args):
@@ -134,7 +134,10 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
 
 
 def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
-    """Yield edits that multiply a term by one more scalar: 1 - cos, a sine, a letter or a bracket of the formula."""
+    """Yield edits that multiply a vector or matrix term by one more scalar: ``sin(phi)*a`` for a.
+
+    The scalars are those of :func:`_scalars`.
+    """
     scalars = [*_scalars(formula, numeric, letters)]
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
@@ -148,7 +151,10 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
 
 
 def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
-    """Yield the formula with one more matrix in front of a vector, and with one more cross product."""
+    """Yield edits that put one more factor before a vector v: ``R*v`` for a matrix R, or ``cross(a, v)``.
+
+    R and a are the names of matrices and vectors in the claim.
+    """
     shapes = {node: _shape(node, numeric) for _, node in walk(formula) if numeric.is_matrix(node)}
     names = sorted({*numeric.matrix_names})
     named = {name: _shape(Node("name", name), numeric) for name in names}
@@ -176,7 +182,10 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield the scalars that may be missing as a factor of a term."""
+    """Yield the scalars that may be missing as a factor: letters, brackets, and sin, cos, 1 - cos of angles.
+
+    Each comes also as a square and as a divisor.
+    """
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

@@ -134,9 +134,10 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim ``I = ..`` or ``J = ..`` may be right for a body that symrot has no formula for.
+    """Return whether ``I = ..`` or ``J = ..`` may be right, although the known formula ``near`` it differs.
 
-    It may be if the letter has no index for an axis, the context states no body, and the fault is a number or term.
+    It may be if the letter has no index for an axis, the context states no body, and a number or term differs: the
+    formula may be for a body that symrot has no formula for.
     """
     is_bare = re.fullmatch("[IJ]", named.name) is not None
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
@@ -148,7 +149,7 @@ def has_diameter(known: Identification) -> bool:
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether a fault is a wrong number or term in the moment of inertia of a body.
+    """Return whether ``known`` is the name of a body's moment of inertia, and the fault ``code`` a number or term.
 
     Then the formula may be right for another body or, if its moment is larger, for a parallel axis.
     """
@@ -156,21 +157,28 @@ def is_of_body(code: str, known: str) -> bool:
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a number that grows if a known formula contradicts the name of a quantity, or if books rarely mean it."""
+    """Return a number by which known formulas are sorted: it is larger if one fits the name of a quantity less well.
+
+    ``known`` is the name of the formula. It contradicts ``name``, as "first component" does omega_3, or books rarely
+    mean it.
+    """
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether a known formula's name has one of several words; "velocity" in "angular velocity" does not count.
+    """Return whether ``known``, the name of a known formula, has one of several words.
 
-    If ``words`` is None, any name will do.
+    "velocity" in "angular velocity" does not count. If ``words`` is None, any name will do.
     """
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a formula near a known one is more likely to have a fault than to be another formula."""
+    """Return whether a claim's formula more likely has a fault than is another formula that symrot does not know.
+
+    ``near`` is the known formula one change away, with the fault. Only if the fault is likely, the claim is "doubtful".
+    """
     letters, words = names_in(named.formula), words_of(named)
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
     is_new = not names_in(near.tree) <= letters
@@ -215,13 +223,13 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim says that its quantity is the one that a known formula is for."""
+    """Return whether the context of a claim says that its quantity is the one of the known formula ``near``."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
 
 def _is_of_stated_body(claim: Claim, near: Near) -> bool:
-    """Return whether the context of a claim states a body that the name of a known formula contains."""
+    """Return whether the context of a claim states a body, and the formula ``near`` it is for this body."""
     body = claim.context.body
     return body is not None and body.kind.title in near.known.name
 
@@ -246,7 +254,7 @@ def has_terms(formula: Node) -> bool:
 
 
 def names_in(formula: Node) -> set[str]:
-    """Return the names of the symbols and of the functions of time in a formula."""
+    """Return the names of the symbols and functions of time in a formula: m and phi for ``m*phi(t)``."""
     return {
         str(node.value)
         for _, node in walk(formula)
@@ -255,7 +263,11 @@ def names_in(formula: Node) -> set[str]:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols."""
+    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
+
+    ``matrix`` tells whether the claim's formula is a vector or matrix: only such a one may be equal after a change,
+    such as a transpose.
+    """
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -350,7 +362,10 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words, one of which must be in the name of a known formula for the quantity; None if any name will do."""
+    """Return words for a quantity, one of which a known formula's name must have: "moment of inertia" for I_zz.
+
+    Return None if any name will do, because books use the letter for different quantities.
+    """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
         words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector
@@ -359,13 +374,17 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
 
 
 def quantity_name(named: NamedFormula) -> str:
-    """Return the name of a quantity; a time derivative has a ``d`` in front of the name."""
+    """Return the name of the quantity of a claim: L for ``L = ..``, dL for its time derivative ``L' = ..``."""
     name, dots = re.subn("_?dot$", "", re.sub("_(plus|minus)$|(_prime)+$", "", named.name))
     return f"d{name}" if named.is_rate or dots else name
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Count a known formula's contradictions to a quantity's name: one for another component, one for another frame."""
+    """Return in how many ways ``known``, a known formula's name, contradicts the name of a quantity: 0, 1 or 2.
+
+    It may state another component, as "first component" for omega_3, and the space frame for body rates such as p, q,
+    r.
+    """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip

@@ -156,7 +156,7 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with their entries in another order, scaled so that a constant factor cancels.
+        """Return the signatures for the given order of the entries, scaled so that a constant factor cancels.
 
         So a formula and any multiple of it have the same rows.
         """
@@ -165,7 +165,10 @@ class Fingerprint:
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the hash for a given order of the entries; it does not depend on names or on a constant factor."""
+        """Return the hash under which a formula is looked up, for its shape and the given order of its entries.
+
+        It does not depend on names or on a constant factor.
+        """
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
@@ -235,7 +238,10 @@ def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], 
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return the atoms (symbols, functions, derivatives) on which the value of a formula depends."""
+    """Return those of ``atoms`` on which the value of a formula depends: not y in ``x*y/y``.
+
+    Atoms are symbols, functions and derivatives.
+    """
     for first, _ in DRAWS:
         point = {atom: pow(first, n * n + 2, PRIME) for n, atom in enumerate(atoms)}  # no cross product is zero
         here = _defined(entries, point)

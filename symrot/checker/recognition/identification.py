@@ -146,7 +146,7 @@ def _value(formula: Any) -> Any:
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
     """Return the SymPy value of a tree; its names become symbols or functions of time, as their use tells.
 
-    ``define`` are the names with a definition, such as vectors with their components.
+    ``define`` are the names with a definition, such as vectors with their components, and ``source`` is the text.
     """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -156,7 +156,10 @@ def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = 
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
-    """Return notes with the names of known matrices in a claim: its sides, and the definitions that it uses."""
+    """Return notes such as "R is the rotation matrix .." on the known matrices in a claim.
+
+    They may be its sides, or definitions that it uses.
+    """
     return tuple(
         f"{place} is the {identification}"
         for place, value in _parts(claim)
@@ -193,10 +196,10 @@ def identified(
 ) -> Iterator[Identification]:
     """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
 
-    Steps of derivations are included only if ``steps``. Products of few symbols are included only if the claim has
-    a name for the value (``named``). If ``quantity`` is the name of the value, I_1 and omega_1 cannot stand for
+    Steps of derivations are included only if ``steps``. Products of few symbols are included only if the claim has a
+    name for the value (``named``). If ``quantity`` is the name of the value, I_1 and omega_1 cannot stand for
     quantities of different axes. If ``is_relation``, the value is the difference of an equation's sides, and known
-    relations are searched.
+    relations are searched. ``fits`` tells whether a result may be meant; the others are left out.
     """
     entries, shape = flatten(value)
     try:
@@ -223,13 +226,19 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a match: the numbers of its changes, renamed symbols, and symbols with other initials."""
+    """Return a sort key of a match: the numbers of its changes, renamed symbols, and symbols with other initials.
+
+    A change is one such as a transpose or the other sign.
+    """
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the arrangements of a formula to look up: as it is, transposed, with a quaternion's scalar stored last."""
+    """Yield the arrangements of a formula's entries to look up: plain, transposed, a quaternion's scalar part last.
+
+    ``count`` is the number of entries.
+    """
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -281,7 +290,21 @@ def _matched(
     quantity: str | None,
     fits: Callable[[Identification], bool],
 ) -> Identification | None:
-    """Return the identification of a formula as a known one, if the equality is proven; otherwise None."""
+    """Return the identification of a formula as the formula ``known``, if the equality is proven; otherwise None.
+
+    Parameters
+    ----------
+    known : Known
+    own : Fingerprint
+        The fingerprint of the formula.
+    entries : sequence of Expr
+        The entries of the formula; ``view`` is the order in which they are compared.
+    view : View
+    quantity : str or None
+        The name that the claim gives to the formula.
+    fits : function
+        Tells whether an identification may be meant.
+    """
     theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
     for pairing in islice(pairings(print_of, own, view.order), MOST_TRIES):
@@ -316,16 +339,19 @@ def _matched(
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether names that occur in both a known formula and a claim mean the same quantity in both."""
+    """Return whether names that both a known formula and a claim have mean the same quantity in both.
+
+    ``pairs`` are (known name, name in the claim): (I, J) and (J, I) exchange two names, so that the result is False.
+    """
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
 
 
 def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether the rate of a known symbol stands for the rate of the function that stands for the symbol.
+    """Return whether each rate of a known symbol stands for the rate of what the symbol stands for.
 
-    If L_1 stands for L(t), then dL_1 stands for ``diff(L(t), t)`` and for no other letter of the claim.
+    ``pairs`` are (known name, name in the claim). If L_1 stands for L(t), then dL_1 must stand for ``diff(L(t), t)``.
     """
     renamed = dict(pairs)
     functions = {mine: renamed[mine] for mine in renamed if renamed[mine].endswith("(t)") and f"d{mine}" in renamed}
@@ -374,7 +400,11 @@ def _factor_text(factor: Rational) -> str:
 
 
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways to pair the symbols of two formulas by equal signatures; equal names are paired first."""
+    """Yield the ways to pair the symbols of two formulas by equal signatures; equal names are paired first.
+
+    Each is a dictionary, from symbols of the known formula ``theirs`` to those of the other one, ``own``, whose entries
+    are taken in the given order.
+    """
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
         mine.setdefault(row, []).append(atom)
@@ -451,7 +481,11 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant factor between two formulas, from values at a point; None if the ratio is not constant."""
+    """Return the constant factor by which a known formula (``theirs``) becomes another one (``own``); None without one.
+
+    It is one of ``factors``, and is computed from values at a point. ``pairing`` gives the symbol in the other formula
+    for each known symbol, and ``idle`` are symbols that do not change its value.
+    """
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

@@ -298,7 +298,7 @@ def _solved() -> Iterator[Named]:
 
 
 def _related() -> Iterator[Named]:
-    """Yield the relations of mechanics as differences that are zero, each with its name."""
+    """Yield the relations of mechanics, each with its name and source, as a difference that is zero."""
     for relation in relations():
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
@@ -312,7 +312,8 @@ def _selected(
 ) -> Iterator[tuple[str, Known]]:
     """Yield (key, formula) for the formulas that are long enough to be recognised and short enough for the file.
 
-    They have at least ``least`` symbols, and their texts at most ``longest`` characters.
+    They have at least ``least`` symbols, and their texts at most ``longest`` characters. With ``is_relation``, they are
+    differences that are zero.
     """
     of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
@@ -336,7 +337,10 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the end of a formula's name if it states a function of the quantity, such as ", squared"; otherwise ''."""
+    """Return the end ", squared" of a name such as "spin .., squared", or one such as ", acos"; otherwise ''.
+
+    The formula is then not for the quantity itself, but for its square or cosine.
+    """
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 
@@ -353,13 +357,13 @@ def _is_monomial(entry: Expr) -> bool:
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
-    """Return whether the nonzero entries are different symbols, as in a vector or diagonal matrix of any values."""
+    """Return whether the nonzero entries are different symbols: such a vector or diagonal matrix says nothing."""
     nonzero = [entry for entry in entries if entry != 0]
     return all(entry.is_Symbol for entry in nonzero) and len(set(nonzero)) == len(nonzero)
 
 
 def page(*groups: Iterator[Named]) -> str:
-    """Return the text of the file ``known_formulas.toml``.
+    """Return the text of the file ``known_formulas.toml``, with all formulas that symrot derives.
 
     A test may pass ``groups`` of formulas to print only these.
     """

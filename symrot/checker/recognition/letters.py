@@ -81,15 +81,19 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
 
 
 def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[str]:
-    """Return the names in definitions that are neither functions nor defined by a definition."""
+    """Return the names in ``definitions`` that are neither functions of time nor themselves defined by the claim.
+
+    ``numeric`` has the names of the claim.
+    """
     names = {str(node.value) for tree in definitions.values() for _, node in walk(tree) if node.kind == "name"}
     return names - {"pi", *numeric.functions, *numeric.definitions}
 
 
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return those letters of a formula whose change changes its value, with their values.
+    """Return those letters of a formula, among ``atoms``, whose change changes its value, with their values.
 
-    A formula may contain letters that do not matter: the trace of a matrix depends on its diagonal only.
+    A formula may contain letters that do not matter: the trace of a matrix depends on its diagonal only. ``places`` are
+    the test points.
     """
     if len(atoms) < MANY:
         return atoms
@@ -107,7 +111,7 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
 
 
 def pieces_of(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of all nodes in a tree."""
+    """Return the identities (``id``) of all nodes in a tree, so that a test point stores their values."""
     return frozenset(id(node) for _, node in walk(tree))
 
 

@@ -32,9 +32,9 @@ def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None],
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether values are those of a known moment of inertia plus m d^2, for a parallel axis at a distance d.
+    """Return whether the values ``actual`` are those of a known moment of inertia plus m d^2, for a parallel axis.
 
-    The distance is a simple fraction of one length in the claim, or has two such components. Values that are
+    The distance d is a simple fraction of one length in the claim, or has two such components. Values that are
     multiples of the known ones are not shifted.
     """
     if any(map(is_matrix, (*actual, *known))) or not all(known):
@@ -54,12 +54,18 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
 
 
 def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
-    """Return the rational number k for which the added values are k m d^2; None if there is none."""
+    """Return the rational number k for which the values ``added`` to a moment are k m d^2; None if there is none.
+
+    ``mass`` and ``length`` are the values of m and d at the same test points.
+    """
     return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the rational k and l for which the added values are m (k a^2 + l b^2); [None] if there are none."""
+    """Return the rational k and l for which the values ``added`` to a moment are m (k a^2 + l b^2), or [None].
+
+    ``lengths`` are the values of a and b at the test points.
+    """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip

@@ -135,9 +135,10 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on ``omega = [matrix] q_dot`` by its matrix alone, if q_dot has no components in the claim.
+    """Return the verdict on ``omega = [matrix] q_dot`` by its matrix alone, if q_dot is a single name.
 
-    Return None for other claims, and if the matrix is no rate matrix.
+    Return None for other claims, and if the matrix is no known rate matrix. With ``repair``, a doubtful matrix has
+    repairs.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
@@ -167,7 +168,7 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
-    """Return the known formulas that match after changing the sign of all products of inertia.
+    """Return the known formulas that equal ``formula`` after changing the sign of all products of inertia in it.
 
     Some authors define products of inertia as integrals without the minus sign.
     """
@@ -183,7 +184,10 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 
 def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
-    """Return a note on the convention for products of inertia, if the sign of one matters and nothing states it."""
+    """Return, in a tuple, a note on the convention for products of inertia; () if it does not matter or is stated.
+
+    ``readings`` are the known formulas that the claim is equal to.
+    """
     names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if not names or claim.context.sign_of_products or any("minus sign" in f"{k.name} {k.how}" for k in readings):
         return ()
@@ -194,7 +198,7 @@ def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collectio
 
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit of the formula makes it a known formula; otherwise None."""
+    """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one; otherwise None."""
     if claim.hypotheses:
         return _near(claim, named) if _are_usable(claim) else None
     if named.solve is not None and _is_known_for_exchanged_masses(claim, named):
@@ -211,9 +215,9 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes an equation a known relation; otherwise None.
+    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None.
 
-    The equation is solved for each of its letters in turn.
+    The equation is solved for each of its letters in turn, since faults are searched in formulas for one quantity.
     """
     if len(names_in(left) | names_in(right)) < LEAST_SYMBOLS_RELATED:
         return None
@@ -228,7 +232,10 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return a repair with its terms on the same sides as in the claim; it was found for a solved form of the claim."""
+    """Return a repair with its terms on the same sides as in the claim, ``left == right``.
+
+    The repair was made for ``named``, the claim solved for one of its letters.
+    """
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
@@ -296,9 +303,10 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return the known formula near a claim, if both are equal for some signs of the letters in their roots.
+    """Return, in a tuple, the known formula of ``near`` if the claim's equals it for some signs of letters in roots.
 
-    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
+    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only. The
+    tuple is empty for all other formulas.
     """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
@@ -356,7 +364,10 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
 
 
 def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None."""
+    """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None.
+
+    Unlike :func:`_near`, this tries edits of whole formulas, one by one.
+    """
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
     letters = names_in(named.formula)
     if len(letters) < LEAST_SYMBOLS_EDITED + (not has_terms(named.formula)):
@@ -391,9 +402,9 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
-    """Return the known formulas that are equal to a formula and whose symbols fit the names in the claim.
+    """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
-    The likeliest formula comes first.
+    The likeliest formula comes first. A formula with fewer than ``least_symbols`` symbols is not looked up.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -409,7 +420,10 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that say the same as ``side == tree``, with the side that has the claim's quantity."""
+    """Return the known relations that say the same as ``side == tree``, where the claim's side has its quantity.
+
+    An equation with fewer than ``least_symbols`` symbols is not looked up.
+    """
     difference = sum_of([named.side, negated(tree)])
     try:
         value = claim.with_definitions(claim.interpreter().read(difference))
@@ -437,7 +451,10 @@ def _has_root_of_sum(value: Any) -> bool:
 def _readings_of_formula(
     claim: Claim, named: NamedFormula, formula: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first."""
+    """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
+
+    A formula with fewer than ``least_symbols`` symbols is not looked up.
+    """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))
     except InputError:
@@ -469,9 +486,10 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument if a value is a root, acos, asin or atan2, and the end of the names of formulas for it.
+    """Return x and ", squared" for a value sqrt(x), u and ", acos" for acos(u), so also for asin and atan2.
 
-    For sqrt(x), these are x and ", squared". Any other value is returned with an empty text.
+    The second is the end of the names of the formulas among which the first is looked up. Any other value is returned
+    with an empty text.
     """
     if is_matrix(value):
         return value, ""

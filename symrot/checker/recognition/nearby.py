@@ -86,8 +86,8 @@ class Near(NamedTuple):
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
 
-    The list is empty if the claim has hypotheses under which its own formula already equals a known one at the test
-    points, since then no change is needed.
+    ``fits`` tells which known formulas may be meant. The list is empty if the claim has hypotheses under which its own
+    formula already equals a known one at the test points, since then no change is needed.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -142,14 +142,14 @@ def has_root_of_sum(formula: Node) -> bool:
 
 
 def _quantity(named: NamedFormula) -> Node:
-    """Return the name or the rate for which a claim is solved."""
+    """Return the name or rate, such as L or ``diff(L(t), t)``, for which a claim is solved."""
     atoms = (node for _, node in walk(named.side) if is_atom(node))
     own = (atom for atom in atoms if named.name in (atom.value, *(str(n.value) for _, n in walk(atom))))
     return next(own, named.side)
 
 
 def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
-    """Yield the known relations solved for each symbol that the claim's quantity may be, each with that symbol."""
+    """Yield (symbol, formula) for each known relation, solved for each symbol that may be the claim's ``quantity``."""
     for name, known in solved_relations():
         if is_fitting(name, quantity, is_angle=False):
             yield name, known
@@ -204,7 +204,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part that have the values which the part should have."""
+        """Yield the variants of a part of the formula that have the values which this part should have."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -239,9 +239,10 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Compare a claim with a known formula under a renaming; return the formulas that one change of the claim gives.
+    """Return the formulas that one change of the claim's formula gives, if this then has the values of ``known``.
 
-    Return None if the claim's formula has the known formula's values already.
+    ``renaming`` gives the claim's name for each known symbol. Return None if the claim's formula has these values
+    already.
     """
     named, letters = search.named, search.letters
     atoms = {text_of(atom): atom for atom in letters.atoms}
@@ -317,7 +318,10 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
-    """Return whether a variant or multiple of some part has the values that the part should have at two points."""
+    """Return whether one change of some part gives the whole formula the values ``needed`` at two points.
+
+    The full comparison at all points is slower.
+    """
     formula, at = search.named.formula, search.letters.points[:2]
     return any(
         is_absent(part) or is_multiple(part) or any(search.matching(part)) for part in parts(formula, at, needed[:2])
@@ -334,13 +338,16 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 
 def _repaired(formula: Node, path: Path, change: Change) -> Node:
-    """Return a formula with a changed part; the numbers in its other parts are left as they are."""
+    """Return a formula with the changed part at ``path``; the numbers in its other parts are left as they are."""
     tree = flattened(replaced(formula, path, lambda _: change.made))
     return normalise_factors(tree) if change.code == "factor" else tree
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a known formula after changing the sign of the products of inertia in it."""
+    """Yield the values of a known formula at the points ``own`` with the other sign of its products of inertia.
+
+    Nothing is yielded for a formula without products of inertia.
+    """
     names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if names:
         changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
@@ -350,7 +357,11 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield values as they are and, for a matrix, also transposed, doubled, and with a quaternion's scalar last."""
+    """Yield the values that a claim's formula may have if it is ``known`` in another form.
+
+    These are ``values`` as they are and, for a matrix, also transposed, doubled, and with a quaternion's scalar part
+    last.
+    """
     yield values
     if not is_matrix(values[0]):
         return
@@ -375,9 +386,9 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a claim's formula has another unit than a known one, if its letters have the known symbols' units.
+    """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units.
 
-    Both are evaluated before and after a change of the base units.
+    ``nodes`` gives the letter for each known symbol. Both are evaluated before and after a change of the base units.
     """
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):
@@ -412,7 +423,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which a quantity changes if its base units change; None if its unit is not known."""
+    """Return the factor by which a quantity changes when the base units of its unit do; None for an unknown unit."""
     if unit is None:
         return None
     powers = read_unit(unit.partition(",")[0])
@@ -426,7 +437,11 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that a claim's formula should have if its quantity has the values ``target``; or None."""
+    """Return the values that a claim's formula should have if ``known`` has the values ``target``; None if it has none.
+
+    The side of the claim may be a multiple or power of its quantity, and ``known`` may be a formula for the square of
+    it.
+    """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
         return None

@@ -47,10 +47,10 @@ MOST = 6
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
-    """Return renamings of a known formula's names to names of a claim, the most similar ones first.
+    """Return renamings of a known formula's names ``known`` to names ``own`` of a claim, the most similar ones first.
 
-    ``angles`` are those names of the claim that occur in sines and cosines. A renaming gives each known name the
-    name of a quantity of the claim, or None for one name that the claim lacks.
+    ``angles`` are those names of the claim that occur in sines and cosines. A renaming gives each known name the name
+    of a quantity of the claim, or None for one name that the claim lacks.
     """
     if abs(len(known) - len(own)) > 1:
         return []
@@ -71,9 +71,9 @@ def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the renaming of the components of a quaternion product whose factors are numbered: a1, .., d1 and a2, ...
+    """Return the renaming of the components of a quaternion product whose factors are numbered: q0 to a1, p0 to a2, ...
 
-    The result is None for other names.
+    Such names ``own`` are a1, .., d1 and a2, .., d2. The result is None for other names.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -87,7 +87,10 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name of a component that a product of numbered factors lacks: c2 next to a2, b2, d2 and c1."""
+    """Return the name that a component ``known`` of a quaternion product, which the claim lacks, would have in it.
+
+    It is c2 next to a2, b2, d2 and c1. Return None if the claim's names have no such numbers.
+    """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
     beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
@@ -102,7 +105,7 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
-    """Return the number of symbols that a renaming moves to another axis."""
+    """Return the number of symbols that a renaming moves to another axis, as I_1 to I_2."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
@@ -134,7 +137,8 @@ def _extended(
 ) -> Iterator[dict[str, str | None] | None]:
     """Yield the complete renamings that extend a partial one; also yield None at each step of the search.
 
-    By the Nones the caller counts the steps, to give up after too many.
+    By the Nones the caller counts the steps, to give up after too many. ``order`` are the known names that still have
+    no new name, ``fitting`` the possible new names for each, and ``count`` the number of the claim's names.
     """
     yield None
     if not order:
@@ -154,7 +158,10 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether a name in a claim and a name in a known formula may mean the same quantity."""
+    """Return whether the name ``known`` in a known formula and ``own`` in a claim may mean the same quantity.
+
+    Their letters, units and kinds must agree. ``is_angle``: the claim's name occurs in sines and cosines.
+    """
     name = plain_name(own)
     if known == name:
         return True
@@ -176,7 +183,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for a quantity that a claim lacks, and whether the claim has similar names.
+    """Return a name for the quantity ``known`` that a claim lacks, and whether the claim has similar names.
 
     Omega_3 is similar to Omega_1 and Omega_2.
     """

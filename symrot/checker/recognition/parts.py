@@ -124,7 +124,11 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield the parts of a formula whose right values follow from those of the whole formula, outer parts first."""
+    """Yield the parts of a formula whose right values follow from those of the whole formula, outer parts first.
+
+    ``needed`` are the right values of the whole. For the sum a + b, the right value of a is that of the whole minus b.
+    ``path`` and ``parent`` are the place of the formula in a larger one, and the kind of the node around it.
+    """
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
@@ -139,7 +143,8 @@ def _children(
 ) -> Iterator[tuple[Path, Node, Values | None]]:
     """Yield the children of a part, each with its path and the values that it should have.
 
-    The values are None if nothing determines them.
+    ``values`` are those of the part, and ``needed`` those that it should have. A child comes with None in place of
+    values if nothing determines them.
     """
     cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
     if cells:
@@ -167,7 +172,7 @@ def _children(
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
-    """Return the only row of a column vector whose values are wrong; None if there are several, or none."""
+    """Return the only row of a column in which ``values`` differ from ``needed``; None if it is not just one."""
     pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
     wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
@@ -176,9 +181,10 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, values) for one row of a matrix that multiplies a column.
+    """Yield (path, entry, values) for the wrong row of a matrix that multiplies a column.
 
-    The values are those that the entry should have if it alone were wrong.
+    The values are those that the entry should have if it alone were wrong. ``values`` are those of the product,
+    ``needed`` those that it should have, and ``row`` is the row in which they differ.
     """
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
@@ -268,7 +274,7 @@ def is_multiple(part: Part) -> bool:
 
 
 def multiples(part: Part) -> Iterator[Change]:
-    """Yield the change of a part's sign or numeric factor that gives the part the values it should have."""
+    """Yield the change of a part's sign or numeric factor, if there is one, that gives the part its right values."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return
@@ -295,7 +301,10 @@ class Variant(NamedTuple):
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part that undo usual faults, each with the values of the changed part."""
+    """Return the changes of a part that undo usual faults, each with the values of the changed part.
+
+    ``parent`` is the kind of the node around the part, such as "sum"; ``letters`` are those of the formula.
+    """
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):
         return []
@@ -306,7 +315,7 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield all other symbols of the formula as replacements of a symbol."""
+    """Yield all other symbols of the formula as replacements of ``node``, if it is a symbol."""
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
         return
@@ -318,7 +327,7 @@ def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Ite
 
 
 def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the part with other exponents; a divisor is also yielded as a factor."""
+    """Yield replacements of a part by other powers: x and x^3 for x^2; a divisor is also yielded as a factor."""
     base, exponent = node, Fraction(1)
     if node.kind == "power" and node.args[1].kind == "number":
         base, exponent = node.args[0], node.args[1].value
@@ -338,7 +347,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the other circular functions of the same angle, and the same function of other angles."""
+    """Yield replacements of a sine or the like: other functions of the angle, and its function of other angles."""
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args
@@ -357,7 +366,7 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield a term or bracket that is multiplied or divided by one more symbol or function."""
+    """Yield replacements of a term or bracket that have one more symbol or function as factor or divisor: m*a for a."""
     if parent in ("product", "power", "inv") or node.kind in ("neg", "inv", "number"):
         return
     if node.kind == "product":
@@ -387,7 +396,10 @@ def _factors(letters: Letters) -> Iterator[tuple[Node, Values]]:
 
 
 def _of_terms(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield a sum with another exponent in all of its terms, or with sine and cosine of one angle exchanged."""
+    """Yield replacements of a sum: another exponent in all terms, or sine and cosine of one angle exchanged.
+
+    For a + b, the former gives a^2 + b^2.
+    """
     trees: list[tuple[Node, str]] = []
     if node.kind == "sum":
         bases = [_base(term) for term in node.args]

@@ -89,9 +89,10 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield (name, source, formula) for each symbol in ``words`` if the relation is linear in it or in its square.
+    """Yield (name, source, formula) for each symbol for which a relation is solved.
 
-    The name of a formula for a square ends with ", squared".
+    These are the symbols in ``words`` that occur in it only linearly, or only as a square. The name of a formula for a
+    square ends with ", squared".
     """
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():
@@ -108,7 +109,7 @@ def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
 
 
 def terms_expanded(formula: Expr) -> int:
-    """Return a bound on the number of terms that a formula has when its products and powers are multiplied out."""
+    """Return an upper bound on the number of terms of a formula after multiplying out: 3 for ``(a + b)**2``."""
     if isinstance(formula, Add):
         return sum(map(terms_expanded, formula.args))
     if isinstance(formula, Mul):
@@ -120,10 +121,10 @@ def terms_expanded(formula: Expr) -> int:
 
 
 def primitive(difference: Expr) -> Expr:
-    """Return the numerator of a difference without a common factor that is a number or a power of a symbol or function.
+    """Return the numerator of a difference without common factors: a - b for ``2*c*a/d - 2*c*b/d``.
 
-    Equations that differ by such a factor on both sides, or by a denominator, have the same primitive difference,
-    perhaps with another sign.
+    A common factor is a number or a power of a symbol or function. Equations that differ by such a factor on both
+    sides, or by a denominator, have the same primitive difference, perhaps with another sign.
     """
     numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
     try:
@@ -133,7 +134,7 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference whose terms have no symbol or function as a common factor or as a divisor.
+    """Return a difference without symbols or functions that are a factor or divisor of all its terms.
 
     Up to a constant factor it is what :func:`primitive` returns, which is slower, because it multiplies out.
     """
@@ -146,9 +147,10 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols and functions that all terms of a formula have in common; negative for divisors.
+    """Return the powers of symbols and functions that all terms of a formula have as a factor; negative for divisors.
 
-    The result is None for a formula with roots, or with another divisor than a product of such powers.
+    They are {a: 1, b: -1} for ``a*c/b + a/b``. The result is None for a formula with roots, or with another divisor
+    than a product of such powers.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]

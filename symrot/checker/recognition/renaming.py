@@ -35,7 +35,7 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether a renaming, pairs of a known and a new name, keeps the axes together and each angle with its rate.
+    """Return whether a renaming, pairs (known name, new name), keeps the axes together and each angle with its rate.
 
     If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
     """
@@ -54,7 +54,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether the new names of an earlier and a later value have increasing numbers: omega_1, omega_2."""
+    """Return whether the new names of an earlier and a later value, if numbered, have increasing numbers: w_1, w_2."""
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -63,9 +63,10 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return the pair (component that a known formula is for, name of the quantity) to add to a renaming, in a list.
+    """Return a pair for a renaming, (component in the known formula's name, ``quantity``), in a list.
 
-    The list is empty if either has no component.
+    For the known name "first component of .." and the quantity omega_x it tells that axis 1 becomes x. The list is
+    empty if either has no component.
     """
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
@@ -97,12 +98,18 @@ def axes_of(name: str) -> frozenset[int]:
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether all entries of a rotation matrix keep their places, or all move as in the transpose."""
+    """Return whether all entries of a rotation matrix keep their places, or all move as in the transpose.
+
+    ``places`` are pairs of (row, column), known and new; ``order`` is the permutation of the axes.
+    """
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether a permutation of the three axes maps the axes of each known name to those of its new name."""
+    """Return whether the permutation ``order`` maps the axes of each known name to those of its new name.
+
+    ``axes`` are these pairs of axes; names without axes do not matter.
+    """
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

@@ -19,7 +19,7 @@ SQUARED = ", squared"
 
 
 class SolvedRelation(NamedTuple):
-    """A known relation that is solved for the symbol ``name``: ``known`` is the formula for this symbol."""
+    """A known relation that is solved for the symbol ``name``; ``known`` has the formula for this symbol."""
 
     name: str
     known: Known
@@ -50,9 +50,10 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
-    """Yield an equation solved for each of ``atoms`` (letters and rates) that it has in one power only, 1 or 2.
+    """Yield the equation ``left == right`` solved for each of ``atoms`` (letters and rates) for which that is possible.
 
-    The letter is isolated with its factor, not divided by it: ``I*w1 + M*t = I*w2`` becomes ``I*w2 == I*w1 + M*t``.
+    The letter must occur in one power only, 1 or 2. It is isolated with its factor, not divided by it: ``I*w1 + M*t =
+    I*w2`` becomes ``I*w2 == I*w1 + M*t``.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     for atom in atoms:
@@ -69,10 +70,10 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Carry a change of an equation's solved form over to the equation; return its sides.
+    """Return the sides of ``left == right`` after the change that turned the formula of ``named`` into ``tree``.
 
-    ``tree`` is the changed formula of ``named``, which :func:`solved_claims` returned. The result is None if more
-    than one term changed.
+    ``named`` is this equation solved for a letter, by :func:`solved_claims`. The result is None if more than one term
+    changed.
     """
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]
@@ -85,7 +86,10 @@ def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[
 
 
 def _solve(coefficient: Node, exponent: int) -> Solve:
-    """Return a function from a formula for ``coefficient * letter**exponent`` to a formula for the letter."""
+    """Return a function that divides a formula by ``coefficient`` and, for the exponent 2, takes the root.
+
+    So it maps a formula for ``coefficient * letter**exponent`` to one for the letter.
+    """
 
     def solved(formula: Node) -> Node:
         quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula

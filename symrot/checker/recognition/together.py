@@ -29,13 +29,17 @@ def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
 
 
 def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]:
-    """Return, for each letter of a formula, the letter of the known formula that it stands for."""
+    """Return, for each of ``letters`` of a formula, the letter of the known formula that it stands for."""
     renamed = {new: mine for mine, new in known.mapping.items()}
     return {letter: letter for letter in letters} | renamed
 
 
 def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
-    """Return whether known formulas, one for each line, are different components of one quantity."""
+    """Return whether known formulas, one for each line, are different components of one quantity.
+
+    Each comes with the meanings of its letters, which must agree in all lines. The result is True if a formula is no
+    component.
+    """
     places = [tuple(_places(known.name)) for known, _ in choice]
     if not all(places):
         return True

@@ -30,7 +30,7 @@ class Copied:
     where : int
         The position at which the ``where`` clauses start; -1 if there are none.
     numbers : tuple of str
-        The numbers of equations.
+        The numbers of equations, such as "(2.1)".
     notes : tuple of str
         Sentences that say which words are left out.
     """

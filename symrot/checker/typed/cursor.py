@@ -215,7 +215,7 @@ class Cursor(ABC):
         return self.token().text == self.element
 
     def end_of_run(self) -> int:
-        """Return the position in the text where the factor at the cursor ends."""
+        """Return the position in the text at which the factor that starts at the cursor ends."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
@@ -232,7 +232,10 @@ class Cursor(ABC):
         return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
 
     def is_cross_letter(self) -> bool:
-        """Return whether a letter x is the sign of a cross product: with blanks around it, between names of vectors."""
+        """Return whether the token at the cursor is a letter x that is the sign of a cross product, as in ``a x b``.
+
+        It has blanks around it, and is between names of vectors.
+        """
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
@@ -243,7 +246,7 @@ class Cursor(ABC):
 
 
 def is_usual_vector(name: str) -> bool:
-    """Return whether books usually give a name, such as r or v, to a vector."""
+    """Return whether books usually mean a vector by a name such as r, v or omega."""
     return re.split("[_0-9]", name)[0] in USUAL_VECTORS
 
 
@@ -253,7 +256,10 @@ def is_mass_before_vector(token: Token, after: Token) -> bool:
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
-    """Return whether a letter x may be a cross product sign, judged by the tokens before and after it."""
+    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors.
+
+    ``vectors`` are names that the text shows to be vectors, beside those that books usually give to vectors.
+    """
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

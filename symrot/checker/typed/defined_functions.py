@@ -55,5 +55,8 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 
 def instead(name: str) -> str:
-    """Return the middle part of a message on the inverse of cot, sec or csc: what to write in its place, and why."""
+    """Return words for the middle of an error message: what to write instead of the inverse of ``name``, and why.
+
+    ``name`` is cot, sec or csc.
+    """
     return f"{DISPUTED[name]} instead of the inverse of {name}, whose values for x < 0 differ from book to book,"

@@ -129,8 +129,8 @@ class Parser(PiecesPart):
     def divisor(self, above: Node, start: int, slash: int) -> Node:
         """Parse the divisor after a slash: without brackets, it is one factor or the whole product that follows.
 
-        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks,
-        divide by the product.
+        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
+        the product. ``above`` is the formula before the slash.
         """
         first = self.token()
         below = [self.factor()]
@@ -182,7 +182,10 @@ class Parser(PiecesPart):
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Parse a dot after a vector and the factor after it; put their scalar product into ``factors``."""
+        """Parse a dot after a vector, and the factor after it; put their scalar product into ``factors``.
+
+        It replaces the last factor, which is the vector.
+        """
         self.plain = True
         self.next()
         right = self.factor()
@@ -214,7 +217,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return a base with a raised exponent: a power ``x²``, a transpose or an inverse."""
+        """Return ``base`` with the raised exponent that ``token`` is: the power ``x²``, a transpose or an inverse."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):

@@ -266,12 +266,18 @@ class OpenFunctionsPart(Cursor):
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return the name at a place, empty if there is none or if a blank is before it, and the place after it."""
+        """Return the name at ``place`` and the next place; an empty text if no name is there, or a blank is before it.
+
+        Places are counted in tokens from the cursor.
+        """
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return the variable x if ``dx`` is at a place, otherwise an empty text, and the place after it."""
+        """Return x and the next place if ``dx`` is at ``place``; an empty text and a place for anything else.
+
+        Places are counted in tokens from the cursor.
+        """
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place
@@ -289,7 +295,7 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, TIME), self.span(token.start))
 
     def varies(self, operand: Node) -> None:
-        """Record that the names in a formula after d/dt may be functions of time."""
+        """Record that the names in ``operand``, a formula after d/dt, may be functions of time."""
         for _, node in walk(operand):
             is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
             if is_open or (node.kind == "call" and node.args == (TIME,)):

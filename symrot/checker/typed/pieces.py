@@ -260,7 +260,10 @@ class PiecesPart(OpenFunctionsPart):
         return Node("name", word, (), self.span(token.start))
 
     def is_matrix_of(self, word: str, argument: str) -> bool:
-        """Return whether ``R(q)`` before a factor is the name of a matrix that depends on a quaternion: ``R(q) v``."""
+        """Return whether a name before a bracket is that of a matrix which depends on a quaternion: R in ``R(q) v``.
+
+        ``word`` is the name, ``argument`` the name in the bracket.
+        """
         after = self.token(3)
         is_name = re.fullmatch("[A-Z]", word) is not None and argument in ("q", "Q", "p") and argument != "t"
         return is_name and not self.as_sympy and after.kind == "name" and after.spaced
@@ -341,7 +344,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", "abs", (inner,), self.span(token.start))
 
     def integral(self, token: Token) -> Node:
-        """Read ``∫_0^1 x dx``, or ``∫ x² dm`` and ``∫ ρ x² dV`` over a body that the text does not describe."""
+        """Parse ``∫_0^1 x dx``, or ``∫ x² dm`` and ``∫ ρ x² dV`` over a body of unknown shape; return the tree."""
         self.plain = True
         limits = self.limits() if self.take("_") else None
         outer = self.in_integral, self.element
@@ -363,7 +366,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", "integral_over_body", (inner,), self.span(token.start))
 
     def limits(self) -> tuple[Node, Node]:
-        """Read the limits of an integral after ``∫_``, as in ``∫_0^1`` or ``∫₀¹``."""
+        """Parse the limits of an integral after its sign, as in ``∫_0^1`` or ``∫₀¹``, and return them."""
         lower = self.limit()
         if self.token().kind == "power":
             return lower, number(int(self.next().text))

@@ -72,7 +72,10 @@ def check_dimensions(
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Check the units of an equation between SymPy values; the symbols of :mod:`symrot.symbols` have known units."""
+    """Return whether the units of an equation between SymPy values fit together, as :func:`check_dimensions` does.
+
+    The symbols of :mod:`symrot.symbols` have known units; ``units`` are those of other symbols, by name.
+    """
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:

@@ -133,7 +133,7 @@ class UnitProduct:
 
     @property
     def factor(self) -> Node:
-        """The factor to SI units as a tree."""
+        """The exact factor from this unit to SI units as a tree: ``1/1000`` for g."""
         pi = Node("power", None, (Node("name", "pi"), number(self.power_of_pi)))
         return product([number(self.fraction), *([pi] if self.power_of_pi else [])])
 
@@ -278,8 +278,8 @@ def numeric_end(source: str) -> tuple[str, str]:
 def unit_beside_letters(source: str) -> str:
     """Return the first number with a unit, such as "3 m/s^2", in a text with other letters; "" without one.
 
-    It must surely be no product of letters. It is none if the unit has several letters, or if a side is only this
-    number with a unit such as m/s^2, and the other sides have none of these letters.
+    Its letters must surely mean a unit, no quantities. They do if the unit has several letters, or if a side is only
+    this number with a unit such as m/s^2, and the other sides have none of these letters.
 
     Examples
     --------

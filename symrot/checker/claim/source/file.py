@@ -217,7 +217,10 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those that its table lists, by default both sides."""
+    """Return the parts of a claim that repairs may change: those that ``editable`` lists, by default both sides.
+
+    ``entry`` is the table of the claim in the file, ``define`` are its definitions, and ``place`` is for messages.
+    """
     parts = tuple(entry.get("editable", SIDES))
     known = (*SIDES, *(name for name, _ in define))
     for part in parts:
