@@ -56,7 +56,10 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether ``letter`` is the imaginary unit in a product: it is with only numbers and sines, ``I*sin(x)``."""
+    """Return whether ``letter`` is the imaginary unit in a product, as I in ``2*I*sin(x)``.
+
+    It is if all other factors are numbers, sines and cosines, with at least one sine or cosine.
+    """
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))

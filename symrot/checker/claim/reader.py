@@ -519,7 +519,7 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names F and d of ``F·d = F d cos θ``, whose scalar product is given by their lengths."""
+    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors."""
     texts = [token.text for token in tokens if token.kind != "end"]
     for sides in (texts, texts[::-1]):
         first, dot, second, sign, *rest = [*sides, *[""] * 4]

@@ -37,9 +37,9 @@ TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 class Vector:
     """A name that means a vector or, as I and J do, a symmetric tensor.
 
-    ``timed``: its components depend on time. ``unit``: a hat over the name says that its length is one. ``axes``:
-    the last letters of the names of its components, such as "xyz". ``place``: the number of its axis, if it belongs
-    to a basis.
+    ``timed``: whether its components depend on time. ``unit``: whether its length is one, as a hat over the name says.
+    ``axes``: the last letters of the names of its components, "xyz" for a_x, a_y and a_z. ``place``: for a unit vector
+    of a basis, such as i or e_x, the number of its axis (0, 1 or 2).
     """
 
     name: str

@@ -49,8 +49,8 @@ def has_order(sequence: str) -> bool:
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
     """Return whether phi, theta and psi are the roll, pitch and yaw of an aircraft: angles about x, y and z.
 
-    ``places`` maps letters to their places (0, 1, 2) in the sequence. Return True for a sequence such as ZXZ, to which
-    this does not apply.
+    ``places`` maps letters to their places (0, 1, 2) in the sequence. The result is also True for a sequence such as
+    ZXZ, which has no angles about three different axes.
     """
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(

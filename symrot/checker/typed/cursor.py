@@ -246,7 +246,7 @@ class Cursor(ABC):
 
 
 def is_usual_vector(name: str) -> bool:
-    """Return whether books usually give a name, such as r or v, to a vector."""
+    """Return whether books usually mean a vector by a name such as r, v or omega."""
     return re.split("[_0-9]", name)[0] in USUAL_VECTORS
 
 
@@ -256,7 +256,10 @@ def is_mass_before_vector(token: Token, after: Token) -> bool:
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
-    """Return whether a letter x may be a cross product sign, judged by the tokens before and after it."""
+    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors.
+
+    ``vectors`` are names that the text shows to be vectors, beside those that books usually give to vectors.
+    """
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

@@ -155,10 +155,10 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession with a claim's formula for the rate: ``phi' = m g l/(C omega_3)``.
+    """Yield the condition of steady precession of a top, if a claim gives a formula for the rate of precession.
 
-    If the claim gives no formula for the rate of precession, yield nothing. ``sides`` are those of the claim; ``names``
-    and ``values`` are its letters and the quantities that they mean.
+    The formula, as m g l/(C omega_3), takes the place of the rate in the condition, which then must be zero. ``sides``
+    are those of the claim; ``names`` and ``values`` are its letters and the quantities that they mean.
     """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
