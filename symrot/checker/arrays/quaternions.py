@@ -291,7 +291,7 @@ class _Products:
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:
-        """Return a product in which quaternions, and the vectors between them, are factors of ``qmul``, Hamilton's product.
+        """Return a product in which quaternions, and the vectors between them, are multiplied by ``qmul``.
 
         Scalar factors stay in front: ``2*q*v*p`` becomes ``2*qmul(qmul(q, v), p)``.
         """
