@@ -163,7 +163,10 @@ def _without_backticks(source: str) -> str:
 def _on_latex(
     source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool, stated: Context
 ) -> Verdict:
-    """Return the verdict on a text in LaTeX; the claim as it was read, and its repairs, are in LaTeX too."""
+    """Return the verdict on a text in LaTeX; the claim as it was read, and its repairs, are in LaTeX too.
+
+    The arguments are those of :func:`symrot.checker.text.verdict_on_text`.
+    """
     from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation

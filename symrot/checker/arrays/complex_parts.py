@@ -67,7 +67,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
     """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show it to be the imaginary unit.
 
-    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do.
+    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do. ``nodes`` are all nodes
+    of the formulas ``trees``.
     """
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:

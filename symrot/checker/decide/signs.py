@@ -192,7 +192,10 @@ def _by_roots(formula: Expr, strict: bool) -> bool:
 
 
 def _by_squares(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial of degree two is a sum of squares, plus terms that are positive by their signs."""
+    """Return whether a polynomial of degree two is a sum of squares plus terms that are nonnegative by their signs.
+
+    With ``strict`` it must be positive.
+    """
     try:
         poly = Poly(formula)
     except sympy.PolynomialError:

@@ -340,7 +340,10 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_reversed(name: str, known: Identification) -> bool:
-    """Return whether a claim says v = r x omega, although velocities are omega x r."""
+    """Return whether a claim says v = r x omega, although velocities are omega x r.
+
+    ``name`` is the claim's quantity, v here, and ``known`` the cross product as a known formula.
+    """
     second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
     return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
 

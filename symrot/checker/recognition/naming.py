@@ -257,7 +257,7 @@ def _are_usable(claim: Claim) -> bool:
 
 
 def _is_norm(side: Node, other: Node) -> bool:
-    """Return whether an equation says that a sum of squares, or a length, is one."""
+    """Return whether the equation ``side == other`` says that a sum of squares, or a length, is one."""
     squares = side.args if side.kind == "sum" else (side,)
     return other == number(1) and all(
         (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
