@@ -19,7 +19,7 @@ _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
 def with_plain_signs(source: str) -> str:
-    r"""Return a text with ordinary signs in place of signs that can have only one meaning, such as the comma in 1,500.
+    r"""Return a text with ordinary signs in place of others that can mean only one thing, such as the comma in 1,500.
 
     Examples
     --------

@@ -171,7 +171,10 @@ def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
 
 
 def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
-    """Return whether both sides, their divisors and their roots are proven to be defined at a point."""
+    """Return whether both sides of an equation are proven to be defined at a point, with its divisors and roots.
+
+    ``values`` are the values of the symbols there.
+    """
     parts = [enclosure(side, values) for side in (equation.left, equation.right, *equation.divisors)]
     if any(part is None for part in parts) or any(part.a <= 0 <= part.b for part in parts[2:]):
         return False

@@ -69,8 +69,8 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
     """Return the diagnosis and the repair of a false equation whose right side is a whole number with a unit.
 
-    They are the fields ``diagnosis`` and ``repairs`` of a verdict, empty if no right number is known. ``factors`` has,
-    for each name of a unit, the factor to SI units.
+    They are the fields ``diagnosis`` and ``repairs`` of a verdict, empty if no right number is known. ``sides`` are
+    those of the equation, with names for units, and ``factors`` has the factor to SI units for each such name.
     """
     left, right = sides
     digits, unit = _decimal(right, measured.text, r"\d+")

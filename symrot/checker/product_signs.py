@@ -24,7 +24,10 @@ COORDINATES = ("x", "y", "z")
 
 
 def sign_by_integral(name: Node, formula: Node) -> str:
-    """Return "plus" for ``I_xy = integral of x*y dm``, "minus" for its negative, and "" for any other definition."""
+    """Return "plus" if a text defines ``name`` as in ``I_xy = integral of x*y dm``, "minus" for its negative.
+
+    Return an empty text for any other definition. ``formula`` is its right side.
+    """
     integral = formula.args[0] if formula.kind == "neg" else formula
     if not _is_product(name) or integral.kind != "call" or integral.value != "integral_over_body":
         return ""

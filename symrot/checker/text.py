@@ -81,6 +81,19 @@ def verdict_on_text(
 ) -> Verdict:  # fmt: skip
     """Return the verdict on a text as people type it, with a note on every other reading whose verdict differs.
 
+    Parameters
+    ----------
+    source : str
+        The text.
+    assume : sequence of str
+        Hypotheses, such as ``"x > 0"``.
+    units : mapping of str to str, optional
+        Units by the name of a symbol.
+    repair : bool
+        Whether to look for true formulas near a claim that is not true.
+    stated : Context
+        What the user states in words about names, body, frame and sequence.
+
     Raises
     ------
     InputError
@@ -195,9 +208,10 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units.
+    """Return the verdict on a text whose numbers have units, by what ``measured`` says of these.
 
-    If units can be read in several ways, it is that on the reading that is true, or else on one whose units fit.
+    If units can be read in several ways, it is that on the reading that is true, or else on one whose units fit. The
+    other arguments are those of :func:`verdict_on_text`.
 
     Raises
     ------
@@ -234,7 +248,10 @@ def _on_measured(
 def _on_units(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on one reading of a text whose numbers have units."""
+    """Return the verdict on one reading of a text whose numbers have units, which ``measured`` describes.
+
+    The other arguments are those of :func:`verdict_on_text`.
+    """
     reading = readings_of(measured.text)[0]
     lines = claims_of_reading(reading, measured.text, assume, units)
     notation = notation_of(reading)
@@ -308,7 +325,10 @@ def _on_inequality(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
     stated: Context,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on a reading that consists of one inequality."""
+    """Return the verdict on a reading that consists of one inequality.
+
+    The arguments are those of :func:`verdict_on_reading`.
+    """
     (chain,) = reading.lines
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
@@ -549,10 +569,10 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations of a chain ``name = a = b``.
+    """Return the verdicts on the equations of a chain ``name = a = b``, from ``verdicts`` on each one alone.
 
-    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2
-    and L^2/(2*I) of one body are equal because of what L means. Then ``name = b`` is decided in place of ``a = b``.
+    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
+    L^2/(2*I) of one body are equal because of what L means. Then ``name = b`` is decided in place of ``a = b``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

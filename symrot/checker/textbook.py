@@ -88,7 +88,10 @@ class Finding:
 def findings(
     document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Finding]:
-    """Yield the result of checking each claim of a document, in order."""
+    """Yield the result of checking each claim of a document, in order.
+
+    ``progress`` is called with a line of text before each claim.
+    """
     proposals = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
     unstated = {condition.claim: condition for condition in conditions()}
     for claim in read_claims(document.path):

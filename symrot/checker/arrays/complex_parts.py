@@ -67,7 +67,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
     """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show it to be the imaginary unit.
 
-    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do.
+    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do. ``nodes`` are all nodes
+    of the formulas ``trees``.
     """
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
@@ -123,8 +124,8 @@ def _without_sign(term: Node) -> Node:
 def _is_of_complex(node: Node, letter: str) -> bool:
     """Return whether a formula is Re, Im, the conjugate or the absolute value of a number that may be complex.
 
-    The number must be a name, as in ``|z|`` and ``z_bar``, or contain the imaginary unit ``letter``, as in ``Re(x +
-    i*y)``.
+    The number must be a name, as in ``|z|`` and ``z_bar``, or contain the imaginary unit ``letter``, as in
+    ``Re(x + i*y)``.
     """
     if node.kind == "name" and str(node.value).endswith(BAR):
         return True
@@ -196,9 +197,9 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 
 
 def is_complex(sides: Sequence[Node], letter: str) -> bool:
-    """Return whether the sides of an equation have complex numbers.
+    """Return whether the sides of an equation contain complex numbers.
 
-    They have if the imaginary unit ``letter`` occurs, or Re, Im, the conjugate or the absolute value of a name.
+    They do if the imaginary unit ``letter`` occurs, or Re, Im, the conjugate or the absolute value of a name.
     """
     return any(
         _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
@@ -208,9 +209,9 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return a complex equation with each side as a column (real part, imaginary part).
 
-    ``letter`` is the imaginary unit, and ``source`` the typed text, for messages. If a side is a single name, as in ``z
-    = exp(i*x)``, it stays as it is: it only gives the other side a name. The other side becomes a column, or its real
-    part alone if it has no imaginary part.
+    ``letter`` is the imaginary unit, and ``source`` the typed text, for messages. If a side is a single name, as in
+    ``z = exp(i*x)``, it stays as it is: it only gives the other side a name. The other side becomes a column, or its
+    real part alone if it has no imaginary part.
 
     Raises
     ------

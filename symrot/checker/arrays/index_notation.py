@@ -31,8 +31,7 @@ MOST_ENTRIES, WIDTH = 81, 9
 def written_out(relation: Relation) -> tuple[Relation, str]:
     """Return an equation with delta_ij or epsilon_ijk written out in components, and a note that says so.
 
-    Any other equation is returned unchanged, with an empty text; so is one that is a condition, as R_ik R_jk = delta_ij
-    is.
+    Any other equation is returned unchanged, with an empty text, and so is a condition such as R_ik R_jk = delta_ij.
 
     Raises
     ------

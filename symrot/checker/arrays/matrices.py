@@ -36,7 +36,7 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
 
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
-    """Return the names that are defined as 3 x 3 matrices whose entries are independent symbols."""
+    """Return the names that are defined as 3 x 3 matrices of independent symbols, as A with A_11, A_12 and so on."""
     return [
         name for name, tree in definitions if any(tree == matrix_of_entries(name, timed) for timed in (False, True))
     ]

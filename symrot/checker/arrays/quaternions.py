@@ -291,7 +291,10 @@ class _Products:
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:
-        """Return a product in which quaternions, and the vectors between them, are multiplied as Hamilton products."""
+        """Return a product in which quaternions, and the vectors between them, are multiplied by ``qmul``.
+
+        Scalar factors stay in front: ``2*q*v*p`` becomes ``2*qmul(qmul(q, v), p)``.
+        """
         norms = [part for factor in node.args if factor.kind == "product" for part in factor.args if part.kind == "inv"]
         if norms:  # of an inverse, the conjugate over the square of the norm
             parts = [part for factor in node.args for part in (factor.args if factor.kind == "product" else (factor,))]

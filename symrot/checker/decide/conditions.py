@@ -170,10 +170,11 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
     """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
 
-    An example is ``x >= 0`` for ``sqrt(x**2) == x``. Let a residual, whose numerator is one of ``numerators``, be ``a +
-    b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or ``-a/b`` everywhere. The claim
-    says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is zero too, and the claim holds; so
-    the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0`` holds wherever the claim is defined.
+    An example is ``x >= 0`` for ``sqrt(x**2) == x``. Let a residual, whose numerator is one of ``numerators``, be
+    ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or ``-a/b`` everywhere. The
+    claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is zero too, and the claim
+    holds; so the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0`` holds wherever the claim is
+    defined.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

@@ -460,7 +460,7 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield points with simple coordinates, first as they are, then each moved to the cuts of atan2.
+    """Yield points with simple coordinates, each of them as it is and then moved to the cuts of atan2.
 
     ``cuts`` are the first arguments of atan2, which are zero on its cut. A point is moved only along a symbol in which
     the argument is linear.

@@ -328,7 +328,7 @@ class Hypotheses:
     ) -> Counterexample | None:
         """Return a point at which the sides provably differ: intervals around their values, to 50 digits, are disjoint.
 
-        Return None if no such point is known.
+        Return None if no such point is known. The arguments are those of :meth:`witness`.
         """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
         involved = occurring([*self.constraints.zeros, *self.constraints.products])

@@ -59,7 +59,10 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational zero of a polynomial, or None; all coordinates but one are numbers of few digits."""
+    """Return a rational zero of a polynomial of degree 2, or None; all coordinates but one are numbers of few digits.
+
+    The arguments are those of :func:`point_of_quadric`.
+    """
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

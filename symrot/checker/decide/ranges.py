@@ -124,7 +124,7 @@ def _bound(factor: Expr) -> _Bound:
 
 
 def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
-    """Return whether a product is proven to be nonnegative where one of its factors is zero."""
+    """Return whether ``product`` is proven to be nonnegative where ``factor`` is zero."""
     bound = _bound(factor)
     return bool(bound.quantity.is_Symbol and surely_nonnegative(product.xreplace({bound.quantity: bound.root})))
 
@@ -205,7 +205,10 @@ def _always_positive(factor: Expr) -> bool:
 
 
 def _exceeds_absolute(factor: Expr) -> bool:
-    """Return whether a factor is positive as ``sqrt(x^2 + 1) - x`` is: ``sqrt(P) + a`` with ``P > a^2``."""
+    """Return whether a factor has the form ``sqrt(P) + a`` with ``P > a^2``, so that it is positive.
+
+    An example is ``sqrt(x^2 + 1) - x``.
+    """
     roots = [term for term in Add.make_args(factor) if term.is_Pow and term.exp == Rational(1, 2)]
     if len(roots) != 1 or not factor.is_Add:
         return False
@@ -235,7 +238,10 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add ``root`` as a lower bound if the quantity is ``above`` it, otherwise as an upper bound."""
+        """Add a bound: the quantity is above ``root`` if ``above``, otherwise below it; ``closed``: it may be equal.
+
+        A bound that is weaker than the one so far changes nothing.
+        """
         name = "low" if above else "high"
         known = getattr(self, name)
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
@@ -246,7 +252,7 @@ class _Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of the quantity minus ``root`` (0 if unknown), and whether this difference may be zero."""
+        """Return the sign of the quantity minus ``root`` in its range (0 if unknown), and whether it may be zero."""
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
             if distance is not None and distance.is_nonnegative:
@@ -277,7 +283,7 @@ class _Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "_Conditions":
-        """Return the given conditions in their simplest form."""
+        """Return the conditions ``signs`` in their simplest form; without ``divided``, divisors need not be nonzero."""
         conditions = cls()
         for formula, sign in signs:
             conditions._add(_with_plain_functions(formula), sign, divided)
@@ -345,7 +351,10 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a product without its factors of known sign; None if it has become a bound, or if it always holds."""
+        """Return a product without its factors of known sign; None if it has become a bound, or if it always holds.
+
+        ``entry`` is (factors, direction, sign): the product of the factors, times a direction of 1 or -1, has the sign.
+        """
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
         if sign == ">= 0" and all(bound.formula in self.nonzero for bound in bounds.values()):
@@ -381,7 +390,10 @@ class _Conditions:
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
 
     def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
-        """Turn a product ``(q - a)*(b - q)`` into the range from a to b of q; return whether it has this form."""
+        """Turn a product ``(q - a)*(b - q)`` into the range from a to b of q; return whether it has this form.
+
+        ``bounds`` are its factors; the product, times ``direction``, has the ``sign``.
+        """
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
             return False
@@ -413,7 +425,7 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether a condition on a product excludes the point ``bound.root``.
+        """Return whether a condition on a product, of ``factors`` times ``direction``, excludes ``bound.root``.
 
         ``(x - 1)*(x + 1) >= 0`` excludes x = 0, since it excludes all points between -1 and 1.
         """
@@ -479,7 +491,10 @@ def _texts(conditions: _Conditions) -> list[str]:
 
 
 def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str:
-    """Return the condition on the sign of a product as text; ``(x - 1)*(x + 1) >= 0`` becomes ``abs(x) >= 1``."""
+    """Return the condition that ``factors``, times ``direction`` (1 or -1), have the given sign, as text.
+
+    ``(x - 1)*(x + 1) >= 0`` becomes ``abs(x) >= 1``.
+    """
     bounds = [_bound(factor) for factor in factors]
     if len(bounds) == 2:
         first, second = bounds

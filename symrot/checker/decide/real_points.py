@@ -59,7 +59,7 @@ class RealPoint:
         return bool(self.field == QQ)
 
     def number(self, value: Any) -> Expr:
-        """Return an element of the point's field as an exact SymPy number."""
+        """Return ``value``, an element of the point's field, as an exact SymPy number."""
         number: Expr = self.field.to_sympy(value)
         return number if self.rational else number.expand()
 
@@ -70,7 +70,7 @@ class RealPoint:
 
 
 def value_at(poly: PolyElement, point: RealPoint) -> Any:
-    """Return the value of a polynomial over the rationals, in the field of the point."""
+    """Return the value of a rational polynomial at a point, as an element of the point's field of numbers."""
     field = point.field
     total = field.zero
     for mono, coefficient in poly.items():
@@ -83,7 +83,7 @@ def value_at(poly: PolyElement, point: RealPoint) -> Any:
 
 
 def sign_at(poly: PolyElement, point: RealPoint) -> int:
-    """Return the sign of a polynomial at a point."""
+    """Return the sign of a polynomial at a point: 1, -1, or 0 if it vanishes."""
     return _sign(value_at(poly, point), point.field)
 
 
@@ -170,7 +170,10 @@ class _Drawing:
         return RealPoint(self.values, self.field)
 
     def drawn(self, place: int) -> Any:
-        """Return a random rational value for an unknown, with a sign that the constraints allow."""
+        """Return a random rational value for an unknown, of a sign that the constraints allow.
+
+        ``place`` is the number of the unknown.
+        """
         source = self.source
         for _ in range(20):
             value = (
@@ -192,7 +195,10 @@ class _Drawing:
     # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
-        """Replace an equation ``a*b = 0`` by ``a = 0``; return whether there is such an equation."""
+        """Replace one equation ``a*b = 0`` by ``a = 0``, for a factor drawn at random.
+
+        Return whether there is such an equation.
+        """
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
                 return False
@@ -205,11 +211,17 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown whose coefficient is a number; return whether there is such an equation."""
+        """Solve an equation for an unknown that has a number as its coefficient, as ``2*x + y^2 = 1`` for x.
+
+        Return whether there is such an equation.
+        """
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown, by division; return whether there is such an equation."""
+        """Solve an equation that is linear in an unknown, by division, as ``y*x + z = 1`` for x.
+
+        Return whether there is such an equation.
+        """
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -240,7 +252,10 @@ class _Drawing:
         return False
 
     def quadric(self) -> bool:
-        """Choose a rational point on the quadric of an equation of degree 2; return whether there is one."""
+        """Choose a rational point that solves an equation of degree 2 in several unknowns, as ``x^2 + y^2 = 1``.
+
+        Return whether one was chosen.
+        """
         if self.field != QQ:
             return False
         fitting = [p for p in self.zeros if max(map(sum, p)) == 2 and self.known.get(("barren", p), 0) < MOST_BARREN]
@@ -268,7 +283,10 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root of a polynomial in one unknown; an irrational root is first added to the field."""
+        """Return a root of ``poly``, which has only the unknown with the number ``place``.
+
+        An irrational root is first added to the field.
+        """
         generator = self.ring.gens[place]
         key = (poly, self.field)
         if key not in self.known:
@@ -284,7 +302,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Record the cost of factoring a polynomial of a degree; raise _DeadEnd if all costs exceed the budget.
+        """Add the cost of factoring a polynomial of the given degree; raise _DeadEnd if all costs exceed the budget.
 
         Only a polynomial over an algebraic field, with irrational numbers, costs anything.
         """
@@ -295,7 +313,10 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root of a factor, after adding it to the field and moving all values to that field."""
+        """Return an irrational root of ``factor``, which has only the unknown with the number ``place``.
+
+        The root is added to the field, and all values move to that field. Raise _DeadEnd if there is no suitable root.
+        """
         degree = factor.degrees()[place]
         numbers = [
             _as_rational(factor.coeff(self.ring.gens[place] ** n if n else 1), self.field) for n in range(degree + 1)
@@ -330,7 +351,10 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Substitute ``above/below`` for an unknown in a polynomial; return the result times a power of ``below``."""
+    """Return a polynomial with ``above/below`` in place of an unknown, times a power of ``below``.
+
+    The power is just so high that the result has no divisor. ``place`` is the number of the unknown.
+    """
     degree = poly.degrees()[place]
     if not degree:
         return poly

@@ -111,7 +111,7 @@ def _by_range(formula: Expr, strict: bool) -> bool:
 
 
 def _bounds(formula: Expr) -> Bounds:
-    """Return a lower and an upper bound of a real formula; None in place of a bound that is not known."""
+    """Return a lower and an upper bound of a real formula: (-1, 1) for a sine; None in place of an unknown bound."""
     if formula.is_Rational:
         return formula, formula
     if formula.func in RANGES:
@@ -192,7 +192,10 @@ def _by_roots(formula: Expr, strict: bool) -> bool:
 
 
 def _by_squares(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial of degree two is a sum of squares, plus terms that are positive by their signs."""
+    """Return whether a polynomial of degree two is a sum of squares plus terms that are nonnegative by their signs.
+
+    With ``strict`` it must be positive.
+    """
     try:
         poly = Poly(formula)
     except sympy.PolynomialError:
@@ -226,8 +229,8 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
     """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
 
-    ``gram`` is the matrix of the form, and ``sign`` returns the assumed sign of an unknown by its number. Linear terms
-    with a coefficient >= 0 in a nonnegative unknown are left out: they only increase the value.
+    ``gram`` is the matrix of the form, and ``sign`` returns 1 for the number of an unknown that is never negative, else
+    0. Linear terms with a coefficient >= 0 in such an unknown are left out: they only increase the value.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):

@@ -134,7 +134,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether ``I = ..`` or ``J = ..`` may be right, although the known formula ``near`` it differs.
+    """Return whether a claim ``I = ..`` or ``J = ..`` may be right, although the nearest known formula differs.
 
     It may be if the letter has no index for an axis, the context states no body, and a number or term differs: the
     formula may be for a body that symrot has no formula for.
@@ -157,10 +157,10 @@ def is_of_body(code: str, known: str) -> bool:
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a number by which known formulas are sorted: it is larger if one fits the name of a quantity less well.
+    """Return a number by which known formulas are sorted: the larger, the less a formula fits the name of a quantity.
 
-    ``known`` is the name of the formula. It contradicts ``name``, as "first component" does omega_3, or books rarely
-    mean it.
+    It is larger if ``known``, the formula's name, contradicts ``name``, as "first component" does for omega_3, and for
+    formulas that books rarely mean.
     """
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
@@ -175,9 +175,9 @@ def has_word(known: str, words: Sequence[str] | None) -> bool:
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim's formula more likely has a fault than is another formula that symrot does not know.
+    """Return whether a claim's formula is more likely a known one with a fault than another, unknown formula.
 
-    ``near`` is the known formula one change away, with the fault. Only if the fault is likely, the claim is "doubtful".
+    ``near`` is the known formula one change away, with this fault. Only if it is likely, the claim is "doubtful".
     """
     letters, words = names_in(named.formula), words_of(named)
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
@@ -229,7 +229,7 @@ def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_of_stated_body(claim: Claim, near: Near) -> bool:
-    """Return whether the context of a claim states a body, and the formula ``near`` it is for this body."""
+    """Return whether the context of a claim states a body, and the known formula ``near`` is for this body."""
     body = claim.context.body
     return body is not None and body.kind.title in near.known.name
 
@@ -299,9 +299,10 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
     """Return whether a known formula agrees with the entries, axes and kinds of quantities in a claim's names.
 
-    Examples of what must agree: R_12 can be entry 12 or 21 of a rotation matrix and no other; in the parallel-axis
-    theorem, I_G must be the moment about the centre of mass; p_phi must be the momentum along z; and a letter for a
-    moment of inertia must not stand for a momentum.
+    ``named`` is the formula of the claim with the quantity that it is for. Examples of what must agree: R_12 can be
+    entry 12 or 21 of a rotation matrix and no other; in the parallel-axis theorem, I_G must be the moment about the
+    centre of mass; p_phi must be the momentum along z; and a letter for a moment of inertia must not stand for a
+    momentum.
     """
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
@@ -339,7 +340,10 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_reversed(name: str, known: Identification) -> bool:
-    """Return whether a claim says v = r x omega, although velocities are omega x r."""
+    """Return whether a claim says v = r x omega, although velocities are omega x r.
+
+    ``name`` is the claim's quantity, v here, and ``known`` the cross product as a known formula.
+    """
     second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
     return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
 
@@ -353,7 +357,10 @@ def _is_component_of_rate(named: NamedFormula) -> bool:
 
 
 def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
-    """Return whether a known formula fits what the context of a claim says about its quantity and its letters."""
+    """Return whether a known formula fits what the context of a claim says about its quantity and its letters.
+
+    ``letters`` are those of the claim's formula. Without a context, every known formula fits.
+    """
     if not context:
         return True
     return admits_name(context, known.name, quantity_name(named)) and admits_letters(
@@ -380,10 +387,9 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return in how many ways ``known``, a known formula's name, contradicts the name of a quantity: 0, 1 or 2.
+    """Return in how many ways a known formula's name contradicts the name of a quantity: 0, 1 or 2.
 
-    It may state another component, as "first component" for omega_3, and the space frame for body rates such as p, q,
-    r.
+    ``known`` may state another component, as "first component" for omega_3, or the space frame for p, q and r.
     """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and

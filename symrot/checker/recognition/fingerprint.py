@@ -116,7 +116,10 @@ def _mixed(value: int) -> int:
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return (cosine, sine) of an argument that is a sum of multiples of angles."""
+    """Return (cosine, sine) of an angle, a sum of multiples of symbols, modulo the prime.
+
+    ``known`` has the field element for each symbol.
+    """
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
         coefficient, angle = term.as_coeff_Mul()
@@ -225,8 +228,9 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
     """Return the signature of an atom in a formula such as x/(A - B), which has no value where A and B are equal.
 
-    Each point gives the atom one value, a second atom another, and all remaining atoms a third. The signature is the
-    sum of the formula's values over all choices of the second atom, without those where the formula has no value.
+    Each point gives the atom one value, a second one of ``atoms`` another, and all remaining ones in ``written`` a
+    third. The signature is the sum of the formula's values over all choices of the second atom, without those where the
+    formula has no value.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

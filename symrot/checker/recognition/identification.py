@@ -258,7 +258,10 @@ def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
 
 
 def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
-    """Yield the arrangements of a symmetric tensor with its three axes in another order."""
+    """Yield the arrangements of a symmetric 3 x 3 matrix with the axes x, y, z in another order.
+
+    Nothing is yielded for other formulas.
+    """
     if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
         return
     for axes in permutations(range(3)):
@@ -361,8 +364,8 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
     """Return whether each letter of a formula for a vector may have the unit of the quantity for which it stands.
 
-    omega cannot be a velocity, nor M. Numbers without unit, as in a quaternion, have any letter, and the coordinates
-    x, y and z of a point may be the components of any vector.
+    ``pairs`` are (known name, name in the claim). omega cannot be a velocity, nor M. Numbers without unit, as in a
+    quaternion, have any letter, and the coordinates x, y and z of a point may be the components of any vector.
     """
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     units = [(UNIT_OF_NAME.get(mine), unit_of(other)) for mine, other in with_unit]
@@ -448,7 +451,8 @@ def _likeliest(
 ) -> list[Expr]:
     """Return the symbols ``others`` in the order in which units, axes and first letters best fit those of ``atoms``.
 
-    Equations with many symbols have more orders than can be tried.
+    This order is tried first, as many symbols have more orders than can be tried. ``known`` has the text and the unit
+    of each symbol.
     """
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}

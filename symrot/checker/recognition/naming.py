@@ -103,6 +103,9 @@ SQUARED = ", squared"
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     """Return the verdict "recognised", "doubtful" or "definition" on a claim that gives a formula for a named quantity.
 
+    ``named`` is the quantity with its formula. With ``repair``, known formulas near this one are searched too: without
+    it, the verdict is never "doubtful".
+
     Raises
     ------
     InputError
@@ -254,7 +257,7 @@ def _are_usable(claim: Claim) -> bool:
 
 
 def _is_norm(side: Node, other: Node) -> bool:
-    """Return whether an equation says that a sum of squares, or a length, is one."""
+    """Return whether the equation ``side == other`` says that a sum of squares, or a length, is one."""
     squares = side.args if side.kind == "sum" else (side,)
     return other == number(1) and all(
         (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
@@ -339,7 +342,10 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether a letter of a formula cancels, as b does in ``1 + b/b``."""
+    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``.
+
+    Such a formula is not offered as a repair.
+    """
     try:
         value = claim.interpreter().read(tree)
     except InputError:
@@ -404,7 +410,8 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
-    The likeliest formula comes first. A formula with fewer than ``least_symbols`` symbols is not looked up.
+    The likeliest formula comes first. ``least_symbols`` is the least number of symbols in a formula that is looked up;
+    a name that tells the quantity may allow fewer.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -420,9 +427,9 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that say the same as ``side == tree``, where the claim's side has its quantity.
+    """Return the known relations that say the same as ``side == tree``, with the side that has the claim's quantity.
 
-    An equation with fewer than ``least_symbols`` symbols is not looked up.
+    ``least_symbols`` is the least number of symbols in an equation that is looked up.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -453,7 +460,8 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    A formula with fewer than ``least_symbols`` symbols is not looked up.
+    ``least_symbols`` is the least number of symbols in a formula that is looked up; a name that tells the quantity may
+    allow fewer.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))

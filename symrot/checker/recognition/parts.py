@@ -315,7 +315,10 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield all other symbols of the formula as replacements of ``node``, if it is a symbol."""
+    """Yield all other symbols of the formula as replacements of ``node``, if it is a symbol.
+
+    ``parent`` is the kind of the node around it, and ``values`` are its values; so in the functions below.
+    """
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
         return

@@ -52,8 +52,8 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
     """Yield the equation ``left == right`` solved for each of ``atoms`` (letters and rates) for which that is possible.
 
-    The letter must occur in one power only, 1 or 2. It is isolated with its factor, not divided by it: ``I*w1 + M*t =
-    I*w2`` becomes ``I*w2 == I*w1 + M*t``.
+    The letter must occur in one power only, 1 or 2. It is isolated with its factor, not divided by it:
+    ``I*w1 + M*t = I*w2`` becomes ``I*w2 == I*w1 + M*t``.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     for atom in atoms:

@@ -66,7 +66,7 @@ def minus(x: Any) -> Any:
 
 
 def _plainly(function: Any, x: Any) -> Any:
-    """Return the value of an elementary function at a number, or its values at the numbers of an array."""
+    """Return the value of an elementary function, such as ``np.sin``, at a number or at each number of an array."""
     return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
 
 

@@ -91,7 +91,10 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether an edit left the way to a part, and the part itself, unchanged."""
+    """Return whether ``edited``, which is ``tree`` after an edit, still has the same part at ``path``.
+
+    Then an edit of that part can be made in ``edited`` too.
+    """
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

@@ -146,9 +146,10 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a function that tells, for each path, whether a single edit may change the part there.
+        """Return a function that tells, for each path in a tree, whether a single edit may change the part there.
 
-        In a written-out matrix, an edit may change an entry only if no other entry is wrong.
+        ``place`` is the side or definition with this tree. In a written-out matrix, an edit may change an entry only if
+        no other entry is wrong.
         """
         cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
@@ -171,7 +172,7 @@ class NumericFilter:
         return point.value(left), point.value(right)
 
     def redefined(self, point: Point, name: str, tree: Node) -> Point:
-        """Return a point with one definition replaced.
+        """Return a copy of a point at which the definition of ``name`` is ``tree``.
 
         Stored values that do not depend on the definition are reused.
         """

@@ -128,8 +128,8 @@ class Point:
     def raised(self, variable: Node) -> "Point":
         """Return a copy of the point at which ``variable`` is a dual number with slope 1.
 
-        So the value of a tree at the copy also has the derivative by the variable: a symbol, ``f(t)``, or ``diff(f(t),
-        t)``.
+        So the value of a tree at the copy also has the derivative by the variable: a symbol, ``f(t)``, or
+        ``diff(f(t), t)``.
         """
         order = 0
         inner = variable

@@ -229,9 +229,10 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
-    """Yield each component of a vector with a word for it in its name, such as "first component of the ..".
+    """Yield each component of the vector ``column``, named with a word, such as "first component of the ..".
 
-    The formula of a component is short: only a claim that names the component can be recognised by it.
+    ``name`` is that of the vector. The formula of a component is short: only a claim that names the component can be
+    recognised by it.
     """
     for word, component in zip(WORDS, column, strict=True):
         yield f"{word} component of the {name}", source, component

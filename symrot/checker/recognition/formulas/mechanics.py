@@ -60,7 +60,11 @@ def tops() -> Iterator[Named]:
 
 
 def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
-    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs."""
+    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs.
+
+    They follow from the minimum of the potential ``effective`` of the top, in which ``weight`` is W or m g. ``spin`` is
+    the angular velocity about the axis of the top, in terms of the rates of the angles.
+    """
     rate = symbols.n
     held = {P_PHI: P_PSI * cos(THETA) + A * rate * sin(THETA) ** 2}
     condition = expand(effective.diff(THETA).subs(held) / sin(THETA))
