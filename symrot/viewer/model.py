@@ -306,7 +306,7 @@ def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -
 
 
 def _script(programs: Mapping[str, Program], facts: Mapping[str, Any] = MappingProxyType({})) -> str:
-    """Return JavaScript that defines the object ``kernel``, with one function for each of the ``programs`` under its key.
+    """Return JavaScript that defines the object ``kernel``, with one function for each of the ``programs``, by its key.
 
     ``facts`` are further entries of the object, by name, such as the number of parameters.
     """
