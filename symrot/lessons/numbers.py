@@ -118,7 +118,7 @@ def _quantity(value: Expr, unit: str) -> str:
 
 
 def _of_exercise(lesson: Lesson) -> Iterator[Passage]:
-    """Yield the paragraphs of the exercise ``lesson.worked`` with its solution; every line of the solution is proven."""
+    """Yield the paragraphs of the exercise ``lesson.worked`` with its solution; every line of it is proven."""
     problem = exercise(lesson.worked)[0]
     quantities = ", ".join(f"${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in problem.data)
     asked = " ".join(question.prompt for question in problem.questions if question.kind == "number")
