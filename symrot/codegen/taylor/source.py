@@ -114,7 +114,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
 
     def at(self, pack: Pack, n: str) -> str:
-        """Return the C expression that reads coefficient ``n`` (C text) of a pack (a vector of four series) from memory."""
+        """Return the C expression that reads coefficient ``n`` (C text) of a pack, a vector of four series."""
         if pack in self.packs:
             return f"k{self.packs[pack]}[{n}]"
         row = f"{self._array(pack[0].row)}[{n}]"
