@@ -155,7 +155,7 @@ def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
 
 
 def _is_zero(formula: str) -> bool:
-    """Return whether a formula is the number zero."""
+    """Return whether a formula, given as text, is zero, such as ``"0"`` or ``"1 - 1"``; False if it contains names."""
     node = expression.parse(formula, switching=True)
     if expression.names(node):
         return False

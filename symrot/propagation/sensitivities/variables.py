@@ -33,7 +33,20 @@ LENGTHS = ("radius", "length", "a", "b", "c", "height", "width", "depth", "thick
 
 @dataclass(frozen=True)
 class Variable:
-    """One number by which a motion is differentiated: a component of the initial state, or a constant of the scene."""
+    """One number by which a motion is differentiated: a component of the initial state, or a constant of the scene.
+
+    Attributes
+    ----------
+    key, name, unit : str
+        The requested name, such as ``"omega"``; the name of this component, such as ``"omega_2"``; its SI unit, or an
+        empty text if no table states one.
+    value : Fraction
+        Its present value.
+    moved : function
+        Takes a change of the variable and returns the changed scene; None for a small rotation of the initial attitude.
+    axis : int
+        For a rotation of the initial attitude: the body axis, 0 to 2.
+    """
 
     key: str
     name: str
