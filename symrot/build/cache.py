@@ -67,14 +67,20 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: its command line, and a text that identifies its program in cache keys."""
+    """A C compiler: the words of its command line, and a text that changes when its program or options change.
+
+    The text is a part of cache keys, so that another compiler never gets libraries of this one.
+    """
 
     command: tuple[str, ...]
     identity: str
 
 
 class Cache(NamedTuple):
-    """A directory of compiled kernels; ``reason`` is empty, or says why the directory is not the user's cache."""
+    """The directory that stores compiled libraries; ``reason`` is empty if it is the user's cache directory.
+
+    Otherwise the directory is a temporary one, and ``reason`` says why the user's cannot be used.
+    """
 
     directory: Path
     reason: str
@@ -108,9 +114,9 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the cache directory that is used; if it is a temporary directory, the result contains the reason.
+    """Return the cache directory in use: the user's, or a temporary one of this process, with the reason.
 
-    With ``probe`` a file is written first, so that a full disk is noticed.
+    If ``probe`` is true, a small file is written first, so that a full disk is noticed; see :class:`Cache`.
     """
     if probe:
         _keep(_text_name("probe"), b"")
@@ -152,7 +158,10 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """A library that is being compiled in another thread; the arguments are those of :func:`build`."""
+    """A library that is being compiled in another thread, while the program does other work.
+
+    The arguments are those of :func:`build`; :meth:`path` waits for the result.
+    """
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -193,10 +202,12 @@ class Building:
 
 
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
-    """Return a thread that runs ``work``, a compilation; all modules that the work needs are imported here first.
+    """Return a thread, not yet started, that runs ``work(*arguments)``, a compilation.
 
-    A thread that imports a module waits for Python's import lock. Ctrl-C during an import of the main thread can leave
-    this lock locked for ever: then neither the thread nor the process, which waits for its threads, would end.
+    All modules that the work needs are imported here first. A thread that imports a module waits for Python's import
+    lock. Ctrl-C during an import of the main thread can leave this lock locked for ever: then neither the thread nor
+    the
+    process, which waits for its threads, would end.
     """
     import atexit  # noqa: F401
     import shutil  # noqa: F401
@@ -263,7 +274,7 @@ def _digest(text: str) -> str:
 
 
 def _which(program: str) -> str | None:
-    """Return the full path of a program, searched as a shell does, or None if there is none.
+    """Return the full path of the executable ``program``, searched on the path as a shell does; None if there is none.
 
     The module shutil has such a function but is slow to import.
     """
@@ -300,7 +311,10 @@ def _processor() -> str:
 
 
 class _Temporary:
-    """The private directory of this process, created on first use and removed at exit."""
+    """The private cache directory of this process, for when the user's cannot be used.
+
+    It is created on first use and removed when the process ends.
+    """
 
     def __init__(self) -> None:
         self.path: Path | None = None
@@ -351,7 +365,7 @@ def _foreign(path: Path) -> str:
 
 @cache_once
 def _exposed(directory: Path) -> str:
-    """Return the reason why another user could replace the cache directory, or an empty text.
+    """Return the reason why another user could replace the cache ``directory``, or an empty text if nobody could.
 
     A user who may write to a directory may rename its entries, even entries of other users. In a sticky directory such
     as ``/tmp``, only the owner of the entry, the owner of the directory and root may rename an entry. Therefore every
@@ -372,9 +386,10 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group may have members other than the user.
+    """Return whether the group with the number ``group`` may have members other than the user.
 
-    A group is the user's own if it has the name of the user and no other members.
+    A group is the user's own if it has the name of the user and no other members. If the system does not know the group
+    or the user, the result is True.
     """
     import grp
     import pwd
@@ -387,7 +402,10 @@ def _shared_group(group: int) -> bool:
 
 
 def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory, and the reason why it cannot be used, or an empty text if it can."""
+    """Return the user's cache directory and a text: empty, or the reason why the directory cannot be used.
+
+    A missing directory is created.
+    """
     directory = _cache_directory() / CACHE_SUBDIR
     try:
         if not directory.is_dir():
@@ -431,7 +449,10 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _keep(name: str, content: bytes) -> Path:
-    """Write a file into the cache, or into the temporary directory if the cache cannot be written; return its path."""
+    """Write ``content`` into the cache as a file ``name`` and return its path.
+
+    If the user's cache cannot be written, the file is in the temporary directory of this process.
+    """
     if _temporary.path is None:
         directory, reason = _user_directory()
         if not reason:
@@ -458,7 +479,10 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the path of the library that a cache entry names, or None if the library does not match its checksum."""
+    """Return the path of the library that the file ``entry`` in ``directory`` names; None if it is missing or damaged.
+
+    A library is damaged if its content does not match the checksum in its name. ``name`` is the beginning of that name.
+    """
     pointer = _read(directory / entry)
     if pointer is None:
         return None

@@ -25,7 +25,7 @@ _running: set[Popen[bytes]] = set()
 
 
 def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, output: Path, seconds: float) -> str:
-    """Compile a text into ``output``; return the first error message of the compiler, or an empty text.
+    """Compile the C text ``source`` into the file ``output``; return "" or the first error message of the compiler.
 
     Raises
     ------

@@ -99,14 +99,14 @@ def _refused(text: str) -> Any:
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
-    """Check every statement of a certificate; return the certificate, and one sentence for each check that it passed.
+    """Check every statement of a certificate; return its content, and one sentence for each check that it passed.
 
     Parameters
     ----------
     path : Path
         NAME.cert.json; the files that it names are in the same folder.
     symrot_statement : callable
-        Takes a certificate and returns the statements that symrot proves about the kernel of that name
+        Takes the content of a certificate and returns the statements that symrot proves about the kernel of that name
         (:func:`symrot.certificates.certificate.proven_statement`), or None if there is no such kernel.
 
     Raises
@@ -130,7 +130,8 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
     """Check header, C text and statements of a certificate against symrot's own derivation.
 
-    Return one sentence for each check.
+    Return one sentence for each check; raise CertificateError at the first that fails. The arguments are those of
+    :func:`audit`, with ``data``, the content of the certificate.
     """
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
@@ -158,9 +159,11 @@ _READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
 
 def _check_others(path: Path, data: Data, source: str) -> list[str]:
-    """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text.
+    """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text, ``source``.
 
-    Return a list with one sentence for each of the two files that is there.
+    ``data`` is the content of the certificate at ``path``. The list has one sentence for each of the two files that is
+    in
+    the certificate's folder. CertificateError is raised if a file performs other operations.
     """
     findings = []
     for ending, compare in _READERS.items():
@@ -182,7 +185,10 @@ def _compared(data: Data) -> list[str]:
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
-    """Raise CertificateError if a section of a certificate differs from the section that symrot derives now."""
+    """Raise CertificateError if a section of the certificate ``data`` differs from the same section of ``statement``.
+
+    ``statement`` holds the sections that symrot derives now, by name. ``path`` is for the message.
+    """
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(
@@ -191,7 +197,11 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return a sentence about the rounding error bounds; raise CertificateError if they do not hold for the C text."""
+    """Return a sentence that says what was checked about the certificate's bounds of rounding errors.
+
+    CertificateError is raised if the bounds do not hold for ``source``, the C text, or are missing although symrot has
+    bounds for this kernel. ``data`` is the content of the certificate at ``path``.
+    """
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if is_kernel(data["kernel"]) else None
     if section is None:
@@ -216,12 +226,19 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return the operations of a certificate's one-sample functions, by function name, read from the C text."""
+    """Return a map from the name of each C function for one sample to the operations that were read from ``source``.
+
+    ``data`` is the content of the certificate, which names the functions; ``source`` is the text of its C file.
+    """
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 
 def _check_readback(data: Data, source: str) -> None:
-    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs."""
+    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs.
+
+    ``data`` is the content of the certificate, ``source`` the C text. The section states, for each function, the counts
+    and the digest of its operations and its constants.
+    """
     where = f"{data['kernel']}.c"
     for name, stated in data["readback"].items():
         one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)

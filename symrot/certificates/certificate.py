@@ -93,7 +93,11 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return the index text, such as ``"q[1]"``, and (symbol, unit, description) of each component of an argument."""
+    """Return a pair for each component of an argument: its index text, such as ``"q[1]"``, and (symbol, unit,
+    description).
+
+    The index text of an argument that is one number is its name.
+    """
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -132,13 +136,19 @@ PROVERS = (
 
 @cache
 def _prover_digest() -> str:
-    """Return the SHA-256 of the source files in ``PROVERS``; proofs cached under another hash are not used."""
+    """Return the SHA-256 of the source files in ``PROVERS``, which make the proofs.
+
+    It is a part of the key of each proof in the cache, so that a proof by other sources is not used.
+    """
     here = Path(__file__).parent
     return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
 
 def unproven_statement(kernel: KernelUnderTest) -> Data:
-    """Return the parts of a certificate that need no proof: description, formulas, hashes of files, assumptions."""
+    """Return the parts of a kernel's certificate that need no proof, as data for JSON.
+
+    They are description, domain, formulas, hashes of the files, assumptions and compiler flags.
+    """
     description = kernel.description
     return {
         "schema": SCHEMA,
@@ -163,7 +173,10 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
-    """Return the name and definition, as text, of each function in the formulas that has a removable singularity."""
+    """Return the definitions of the functions with a removable singularity that occur in the formulas, as text by name.
+
+    Such a function, for example sin(x)/x, has a limit where its formula divides by zero.
+    """
     x, y = (Symbol(name, real=True) for name in "xy")
     names = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
@@ -177,15 +190,19 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Return a kernel's certificate, in which symrot has proven every statement, without optional sections and seal.
+    """Return the certificate of a kernel as data, every statement proven, for comparison with a certificate's file.
 
-    The optional sections are the rounding bounds and the verdicts on object code; the seal is a hash of the content.
+    The optional sections and the seal are left out: the bounds of rounding errors, the verdicts on object code, and the
+    hash of the content.
     """
     return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 
 
 def _proven(kernel: KernelUnderTest) -> Data:
-    """Return the sections ``laws`` and ``readback`` of a certificate: the proofs of its two statements."""
+    """Return the sections ``laws`` and ``readback`` of a kernel's certificate, with their proofs.
+
+    The first proves that the formulas obey their laws, the second that the C text computes the formulas.
+    """
     known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
         "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],
@@ -216,7 +233,11 @@ def _as_lists(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
-    """Return the ``readback`` entry of a C function: its operations, and the proof that they compute the formulas."""
+    """Return the ``readback`` entry of one C function: its operations, and the proof that they compute the formulas.
+
+    ``suffix`` is the end of the function's name, such as ``"f"``, and ``real`` the type of its numbers, such as
+    ``"float"``. CertificateError is raised if the proof fails.
+    """
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
@@ -271,10 +292,10 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 
 
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
-    """Return a certificate to which bounds of rounding errors or verdicts on object code are added.
+    """Return the text of a certificate to which bounds of rounding errors or verdicts on object code are added.
 
-    ``sections`` maps ``"rounding"`` or ``"objects"`` to the content of that section. A section about an earlier version
-    of the kernel's C text is left out.
+    ``text`` is the certificate without them; ``sections`` maps ``"rounding"`` or ``"objects"`` to the content of that
+    section, or to None. A section about an earlier version of the kernel's C text is left out.
     """
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():
@@ -296,7 +317,10 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return a value as JSON text; every object or list that fits on one line is written on one line."""
+    """Return a value as JSON text; an object or list that fits on one line is written on one line.
+
+    ``indent`` is the number of blanks before the value's lines; ``key`` is its key, which takes room on the first line.
+    """
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

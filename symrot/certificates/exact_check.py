@@ -75,7 +75,7 @@ PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459"
 
 
 def require(holds, message):
-    """Return ``holds`` itself if it is true (such as a match); otherwise raise ValueError with the message."""
+    """Return ``holds`` if it is true (such as a match of a pattern); otherwise raise ValueError with the message."""
     if not holds:
         raise ValueError(message)
     return holds
@@ -89,14 +89,21 @@ def nearest(value, real):
 
 
 class RandomIntegers(defaultdict):
-    """A dictionary that draws a random integer for each new key: a variable, or a function with its arguments."""
+    """A dictionary of values at which formulas are compared: each new key gets a random integer.
+
+    A key is the name of a variable, or a function with the values of its arguments, so that equal calls have equal
+    values.
+    """
 
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
 
 
 class Evaluator:
-    """An evaluator of formulas as exact fractions, or of C expressions in floating-point numbers."""
+    """An evaluator of formulas as exact fractions, or of C expressions in the C type ``real``.
+
+    A C expression must have literals of that type.
+    """
 
     def __init__(self, names, functions, real="", calls=None, constants=(), cases=None):
         self.names, self.functions, self.real, self.calls = names, functions, real, calls
@@ -148,7 +155,7 @@ class Evaluator:
         )
 
     def call(self, name, *values):
-        """Return the value of a function, such as ``"sin"``, at the values of its arguments."""
+        """Return the value of the function ``name``, such as ``"sin"``, at the values of its arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
@@ -158,9 +165,10 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Run C statements; return the value of ``return``, or else the assigned values by target, such as ``"q[1]"``.
+        """Evaluate ``body``, C statements; return the value of ``return``, or else a map from each target to its value.
 
-        ``places`` maps the input names that may be read to their values; ``targets`` are the outputs to assign.
+        ``places`` maps the input names that may be read to their values; ``targets`` are the outputs to assign, such as
+        ``"q[1]"``.
         """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
@@ -224,7 +232,10 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check that a constant of the C text is the exact number in ``pair``, rounded; return both numbers."""
+        """Check that a constant of the C text is an exact number, rounded; return both numbers.
+
+        ``pair`` holds the two as text: the number in the C text, and the exact number, such as ``1/3`` or ``1/2*pi``.
+        """
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -234,7 +245,12 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), near=()):
-        """Run the body of a C function at given inputs; return the values that it assigns or returns."""
+        """Run ``body``, the body of a C function, at given inputs; return the values that it assigns or returns.
+
+        ``places`` and ``targets`` are as for :meth:`Evaluator.run`. ``near`` are the angles that the C text has tested
+        to be in
+        the range of functions such as ``symrot_sin``; a call of these for another angle is an error.
+        """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
@@ -292,7 +308,10 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
-        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula."""
+        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula.
+
+        The other arguments are as for :meth:`run`; ``targets`` are in the order of the outputs.
+        """
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
@@ -303,7 +322,11 @@ class KernelCheck:
             )
 
     def check_own(self, function, bare):
-        """Check that a helper function of the C file computes its formula, or an accurate series near zero."""
+        """Check that a helper function of the C file computes its formula, or an accurate series near zero.
+
+        ``function`` is its name in the C text, and ``bare`` the name of the function that it computes, such as
+        ``sinc``.
+        """
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [(-1) ** k * TAYLOR[bare](k) for k in range(len(coefficients) + 1)]
@@ -333,7 +356,10 @@ class FloatFunctions(dict):
 
 
 def hypotheses(values):
-    """Return polynomials that are all zero if the values form a unit vector, unit quaternion or rotation matrix."""
+    """Return polynomials that are all zero if the values form a unit vector, unit quaternion or rotation matrix.
+
+    Nine values are a matrix, row by row; fewer are a vector or quaternion; without values the list is empty.
+    """
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
@@ -427,7 +453,10 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Return whether the cases of a proof cover both branches of every conditional in the formulas."""
+    """Return whether the cases of a law's proof cover both branches of every conditional in the formulas.
+
+    A case is a list of choices ``[left, relation, right]``, where the relation is ``<`` or ``>=``.
+    """
     if not cases or not cases[0]:
         return len(cases) == 1
     left, _, right = cases[0][0]
@@ -456,9 +485,9 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check a certificate and its files exactly; return a line that lists the checks.
+    """Check the certificate at ``path`` and its files exactly; return one line that lists the checks.
 
-    A failed check raises an exception whose type is in ``REFUSALS``.
+    A failed check raises an exception whose type is in ``REFUSALS``; :func:`sentence` makes a message of it.
     """
     path = Path(path)
     data = recheck.certified(path)
@@ -492,7 +521,7 @@ REFUSALS += (ValueError,)
 
 
 def sentence(reason):
-    """Return a sentence for the user about the exception that a failed check raised."""
+    """Return a sentence for the user about ``reason``, the exception that a failed check raised."""
     if isinstance(reason, (SyntaxError, LookupError)):
         return (
             f"the certificate does not follow its schema, or the C text is not as symrot emits it ({reason.args[0]!r})"

@@ -43,7 +43,10 @@ UNFIXED = "without it a compiler may contract a*b + c where the processor has it
 
 @dataclass(frozen=True)
 class FlagRule:
-    """A row of the table of compiler flags: a pattern of flags, and the code properties that they switch on or off."""
+    """A row of the table of compiler flags: a pattern of flags, and the properties of code that they switch on or off.
+
+    An example of a property is contraction, the fusion of a product and a sum into one rounding.
+    """
 
     form: str  # regular expression that matches the whole flag
     reason: str
@@ -164,7 +167,7 @@ class FlagEffect:
         return self.holds != NOTHING
 
     def sentence(self) -> str:
-        """Return the effect of the compiler flags, with the reasons for it, as one line."""
+        """Return one line that says what still holds under the flags, with the reasons."""
         effect = {
             BITS: "the bits of the C text and its error bounds hold",
             BOUNDS: "the error bounds hold, not the bits",
@@ -228,7 +231,12 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the compiler's name at the start of a command, or an empty text, and the index of the first flag."""
+    """Return the compiler's name at the start of a command, or an empty text, and the index of the first flag.
+
+    ``words`` is the command; a launcher such as ``ccache`` may come before the compiler. InputError is raised for
+    another
+    compiler than gcc and clang.
+    """
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
     if words[place].startswith("-") or _FILE.fullmatch(words[place]):

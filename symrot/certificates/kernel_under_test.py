@@ -69,14 +69,16 @@ def scene_kernel_under_test(
 
 
 def _expression(node: Node) -> Expr:
-    """Convert a formula in a scene's physical constants from its syntax tree to a SymPy expression."""
+    """Convert a formula from its syntax tree (``node``) to a SymPy expression in symbols of physical constants."""
     return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return the law about the outputs that are derivatives: each is the exact derivative of its rate.
+    """Return a tuple of one law: each output that is a derivative is the exact derivative of its rate.
 
-    The tuple is empty if no output is a derivative.
+    ``outputs`` are the names of the output components; a derivative's is like ``domega_1_by_A``. The tuple is empty if
+    no
+    output is a derivative.
     """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []

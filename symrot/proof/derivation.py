@@ -51,18 +51,18 @@ class ProofError(SymrotError):
 
 @dataclass(repr=False)
 class PrintedPage(Page):
-    """Page of a derivation with methods that print the page; the fields are those of the class ``Page``."""
+    """The page of a derivation, with methods that print it; its fields are those of :class:`symrot.proof.page.Page`."""
 
     def markdown(self) -> str:
-        """Return the page as Markdown, with the formulas in ``$$``."""
+        """Return the page as Markdown text; each displayed formula is LaTeX between lines ``$$``."""
         return markdown(self)
 
     def latex(self) -> str:
-        """Return the page as a LaTeX document."""
+        """Return the page as the text of a complete LaTeX document."""
         return latex_document(self)
 
     def html(self) -> str:
-        """Return the page as one HTML file with native MathML, which needs no network."""
+        """Return the page as the text of one HTML file with native MathML, which needs neither script nor network."""
         return html_document(self)
 
     def __repr__(self) -> str:
@@ -125,7 +125,10 @@ class Derivation(PrintedPage):
         self.rates |= rates or {}
 
     def section(self, title: str) -> None:
-        """Begin a new section of the page, with a heading."""
+        """Begin a new section of the page;
+
+        ``title`` is its heading, and all later steps and paragraphs belong to it.
+        """
         self.items.append(Section(title))
 
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
@@ -138,9 +141,9 @@ class Derivation(PrintedPage):
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """State that an expression, printed as the LaTeX ``named``, is not zero.
+        """State on the page that ``expression`` is not zero: ``text``, then the LaTeX ``named``, then "is not 0".
 
-        Later steps need not repeat this condition.
+        A step in which the expression is a denominator need not repeat this condition.
         """
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
@@ -252,7 +255,12 @@ class Derivation(PrintedPage):
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
-        """Return the decision on an equation; raise ProofError unless the equation holds."""
+        """Return the verdict of :func:`symrot.exact.decide.decide` on the equation ``left = right``, which holds.
+
+        ``relations`` are the hypotheses under which it must hold. If it does not hold, ProofError is raised; its
+        message
+        has the number of the step and ``claim``, the sentence that the step states.
+        """
         verdict = decide(left, right, relations)
         if verdict.verdict != "true":
             where = f" ({verdict.counterexample})" if verdict.counterexample else ""
@@ -265,12 +273,18 @@ class Derivation(PrintedPage):
     def _is_read_back(
         self, claim: str, display: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]
     ) -> bool:
-        """Return whether the form displayed for one side of an equation could be parsed and proven equal to that side.
+        """Return whether ``display``, the form printed for a side, was parsed and proven equal to ``side``.
+
+        The result is False if the form is LaTeX with a name that has no declared meaning, or has another shape: then it
+        is
+        only a label. It is True if ``display`` is None, because then the page prints the side itself. ``sides`` are
+        both
+        sides of the equation, whose symbols the LaTeX may contain; ``claim`` is for the message.
 
         Raises
         ------
         ProofError
-            If the displayed form can be parsed and is not equal to the side.
+            If the displayed form can be parsed and is not equal to the side under the hypotheses ``relations``.
         """
         if display is None:
             return True
@@ -287,9 +301,12 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the value of the LaTeX displayed for a side of an equation, in a list.
+        """Return the values of the LaTeX ``text``, which is displayed for a side of an equation, as a list.
 
-        If the LaTeX is a chain ``X = Y``, the list contains the value of each of its sides.
+        A formula gives one value; a chain ``X = Y`` gives the value of each of its sides. ``sides`` are both sides of
+        the
+        equation: the text may contain their symbols without a declared meaning. Unread is raised if it cannot be
+        parsed.
         """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
@@ -313,7 +330,10 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Record in ``names`` that the name ``left`` stands for ``right``, if ``right`` is a formula."""
+        """Declare in ``names`` that ``left``, a symbol or the LaTeX of a name, stands for ``right``.
+
+        Then later LaTeX may contain the name. If ``right`` is LaTeX that cannot be parsed, the name loses its meaning.
+        """
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
@@ -337,9 +357,10 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return the conditions of a step without repetitions; a product that is not zero gives one condition per factor.
+    """Return the conditions of a step (``Ne(x, 0)``, ``x >= 0``, ..) without repetitions.
 
-    The condition that a root is not zero becomes the condition that its radicand is not zero.
+    A product that is not zero gives one condition per factor. The condition that a root is not zero becomes the
+    condition that its radicand is not zero. So ``Ne(a*sqrt(b), 0)`` gives ``Ne(a, 0)`` and ``Ne(b, 0)``.
     """
     independent: dict[Any, Any] = {}
     for condition in conditions:
@@ -357,7 +378,10 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return a list of the factors of a polynomial; it contains only the expression itself if that has no factors."""
+    """Return the factors of a polynomial as a list, such as ``[x, x + 1]`` for ``x**2 + x``; else ``[expression]``.
+
+    The list contains only the expression itself if it does not factor, is a number, or is not a polynomial.
+    """
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -388,7 +412,10 @@ def _frozen(side: Any) -> Any:
 
 
 def _short(residual: Any) -> str:
-    """Return the first nonzero entry of a residual as text, cut to one line."""
+    """Return a residual, left minus right side of a refuted equation, as text of at most 160 characters for a message.
+
+    Of a matrix, the text is its first nonzero entry and its place: ``a - b in entry (1, 2)``.
+    """
     if isinstance(residual, MatrixBase):
         place = next(n for n, entry in enumerate(residual) if entry != 0)
         text = f"{residual[place]} in entry ({place // residual.cols + 1}, {place % residual.cols + 1})"

@@ -22,7 +22,10 @@ class Section:
 
 @dataclass(frozen=True)
 class Passage:
-    """Paragraph of assumptions or definitions, optionally with equations (left, right); nothing in it is proven."""
+    """Paragraph of assumptions or definitions (``text``), optionally with ``equations``, pairs (left, right), below it.
+
+    Nothing in it is proven.
+    """
 
     text: str
     equations: tuple[tuple[Any, Any], ...] = ()
@@ -115,25 +118,28 @@ class Table:
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """The steps that prove the rows, in order."""
+        """The proven steps to which the rows of the table belong, row by row; empty if no row has a step."""
         return tuple(step for _, steps in self.rows for step in steps)
 
     @property
     def is_proven(self) -> bool:
-        """Whether any row has a step, so that the table has a column of numbers."""
+        """Whether any row has a proven step; if so, the first printed column has the numbers of the steps."""
         return bool(self.steps)
 
 
 class Drawing(Protocol):
-    """Drawing that can be written as SVG."""
+    """Protocol of a drawing that can be written as SVG, the format of the figures on pages."""
 
     def svg(self, title: str, description: str) -> str:
-        """Return the drawing as a document of SVG with its title and its description."""
+        """Return the drawing as the text of an SVG file;
+
+        ``title`` and ``description`` are its words for screen readers.
+        """
 
 
 @dataclass(frozen=True)
 class Figure:
-    """Figure on a page, drawn when its SVG is asked for.
+    """Figure on a page; ``draw`` is called only when the SVG is needed, because drawing takes time.
 
     Attributes
     ----------
@@ -144,7 +150,7 @@ class Figure:
     caption : str
         Sentences below the figure; formulas are LaTeX between ``$``.
     draw : callable
-        Returns the drawing.
+        Takes no argument and returns the drawing, see :class:`Drawing`.
     section : str
         The title of the section that begins with this figure; empty for a figure at the top of the page.
     """
@@ -157,7 +163,7 @@ class Figure:
 
     @property
     def file(self) -> str:
-        """The path of the figure's file, relative to the page."""
+        """The path of the figure's SVG file, relative to the folder of the page: ``figures/NAME.svg``."""
         return f"figures/{self.name}.svg"
 
     @property
@@ -215,14 +221,17 @@ class Page:
 
     @property
     def extent(self) -> str:
-        """The number of steps in words, for a table of contents."""
+        """The number of steps in words for a table of contents:
+
+        "12 steps", or "12 steps, 3 of them for the library only".
+        """
         count = len(self.steps)
         words = f"{count} {'step' if count == 1 else 'steps'}"
         return f"{words}, {self.beyond} of them for the library only" if self.beyond else words
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """The proven steps, in order; also those in tables."""
+        """The proven steps of the page in order, including those that stand as rows of tables."""
         steps: list[Step] = []
         for item in self.items:
             if isinstance(item, Step):

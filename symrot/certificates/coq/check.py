@@ -33,7 +33,11 @@ _PLACE = re.compile(r'File "[^"]*?([^/"]+)", line (\d+), characters [^:]*:\s*(.*
 
 @dataclass(frozen=True)
 class TheoremResult:
-    """The outcome of a theorem: ``"ok"``, ``"refused"`` by Coq, or ``"not reached"`` after an earlier refusal."""
+    """What Coq did with one theorem of a file.
+
+    ``outcome`` is ``"ok"``, ``"refused"`` (Coq stopped at this theorem) or ``"not reached"`` (Coq stopped at an earlier
+    theorem of the same file).
+    """
 
     file: str
     name: str
@@ -80,12 +84,17 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a Coq file outside comments that assume a statement or skip a proof, such as ``Admitted``."""
+    """Return the words of a Coq file, outside comments, that assume a statement or skip a proof, such as ``Admitted``.
+
+    An empty tuple means that every theorem of the file has a proof.
+    """
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
 def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
-    """Check the theorem about a kernel, and the files that it needs, with Coq; return the result.
+    """Check the theorem about a kernel of the library, and the files that it needs, with Coq; return the result.
+
+    ``seconds`` is the time limit for one file.
 
     Raises
     ------
@@ -169,7 +178,12 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return Coq files in groups that can be checked in parallel: each file needs only files of earlier groups."""
+    """Return the names of Coq files in groups, in the order in which the groups must be checked.
+
+    Each file needs only files of earlier groups, so that the files of a group can be checked in parallel. ``sources``
+    maps
+    each name to its text.
+    """
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
@@ -185,7 +199,10 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Check one file with Coq; return Coq's error message (None if it accepted the file) and Coq's output."""
+    """Check the file ``NAME.v`` in the folder ``place`` with Coq, for at most ``seconds``.
+
+    Return two texts: Coq's error message, or None if it accepted the file, and what Coq printed.
+    """
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)
@@ -200,12 +217,16 @@ def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str
 
 
 def _axioms(printed: str) -> tuple[str, ...]:
-    """Return the names of the axioms that Coq's command ``Print Assumptions`` printed."""
+    """Return the names of the axioms in ``printed``, the output of Coq's command ``Print Assumptions``."""
     return tuple(sorted({match[1] or match[2] for match in _AXIOM.finditer(printed) if match[0] != "Axioms:"}))
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file from Coq's error message; None means that Coq accepted the file."""
+    """Return the outcome of each theorem of a file, for :class:`CoqResult`.
+
+    ``name`` and ``text`` are the file's; ``complaint`` is Coq's error message, whose line number shows the refused
+    theorem, or None if Coq accepted the file. A file of rules or axioms has no theorems: its list is empty.
+    """
     if name in (RULES, ASSUMPTIONS):
         return []
     theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]

@@ -38,12 +38,15 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return a map from the name of each Coq file about Euler angles to its axis sequence, such as ``"zxz"``."""
+    """Return a map from the name of each Coq file about Euler angles to its sequence: ``euler_zxz`` -> ``"zxz"``."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 
 def euler_file(sequence: str) -> CoqFile:
-    """Return the Coq file about one Euler sequence: the formulas of its kernels, and theorems about them."""
+    """Return the Coq file about one sequence of Euler angles: the formulas of its kernels, and theorems about them.
+
+    ``sequence`` is intrinsic in capital letters, such as ``"ZXZ"``, or extrinsic in small letters.
+    """
     name = prefix(sequence)
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return CoqFile(
@@ -62,7 +65,10 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return the axis letter and angle of the three rotations whose product, from left to right, is the dcm."""
+    """Return the three rotations whose product, from left to right, is the rotation matrix of an Euler sequence.
+
+    Each is a pair of axis letter and angle: ``("z", "phi")``.
+    """
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

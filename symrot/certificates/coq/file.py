@@ -13,7 +13,7 @@ __all__ = ["CoqFile", "Theorem", "derivatives", "statement"]
 class Theorem:
     """A theorem of Coq: the statement in words (``about``) and in Coq, and the tactics that prove it.
 
-    ``kernel`` says whether the theorem is about the kernel of the same name.
+    ``kernel`` says whether the theorem is about the kernel of the library that has the same name.
     """
 
     name: str
@@ -24,7 +24,7 @@ class Theorem:
 
     @property
     def text(self) -> str:
-        """The theorem as Coq text, with its comment and proof."""
+        """The theorem as Coq text: a comment with its statement in words, then statement and proof."""
         lines = [f"Theorem {self.name} :", *f"{self.statement}.".split("\n"), "Proof.", *self.proof.split("\n"), "Qed."]
         return "\n".join([comment(self.about), *(_short(line) for line in lines)])
 
@@ -55,7 +55,7 @@ class CoqFile:
 
     @property
     def text(self) -> str:
-        """The file as Coq text; the same formulas give the same bytes."""
+        """The file as Coq text, which ``coqc`` reads; the same formulas give the same bytes."""
         opening = [
             comment(f"{self.title} Printed by `symrot prove --coq`; do not edit."),
             "",
@@ -67,7 +67,7 @@ class CoqFile:
 
     @property
     def digest(self) -> str:
-        """The SHA-256 of the file's text."""
+        """The SHA-256 of the file's text, which certificates state."""
         return sha256(self.text.encode()).hexdigest()
 
 
@@ -77,12 +77,18 @@ def _short(line: str) -> str:
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return Coq hypotheses, each followed by ``->``: the derivative at t of each function of time is its rate."""
+    """Return the Coq hypotheses that the derivative of each function at time t is its rate, as one text.
+
+    ``functions`` and ``rates`` are Coq texts; for ``x`` and ``v`` the text is ``derivable_pt_lim x t v ->``.
+    """
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 
 
 def statement(quantified: str, *hypotheses: str, conclusion: str) -> str:
-    """Return a theorem's statement as lines of Coq: variables, hypotheses (each followed by ``->``), conclusion."""
+    """Return a theorem's statement as lines of Coq: ``forall`` variables, hypotheses, and the conclusion.
+
+    ``quantified`` are the variables after ``forall``; each hypothesis ends with ``->``, and an empty one is left out.
+    """
     lines = [folded(f"  forall {quantified},", 4), *hypotheses, *(f"  {line}" for line in conclusion.split("\n"))]
     return "\n".join(line for line in lines if line)

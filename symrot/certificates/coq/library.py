@@ -56,7 +56,7 @@ def coq_file_names() -> tuple[str, ...]:
 
 @cache
 def coq_file(name: str) -> CoqFile:
-    """Return a Coq file from its name.
+    """Return the Coq file of a name such as ``euler_zxz``.
 
     Raises
     ------
@@ -71,12 +71,15 @@ def coq_file(name: str) -> CoqFile:
 
 @cache
 def rules_text() -> str:
-    """Return the text of ``rotation.v``: the definitions and rules that the proofs use."""
+    """Return the text of ``rotation.v``, the Coq file with the definitions and rules that all other files use."""
     return (files("symrot.certificates.coq") / f"{RULES}.v").read_text(encoding="utf-8")
 
 
 def assumptions_text(names: tuple[str, ...]) -> str:
-    """Return the text of a Coq file that prints all axioms on which the theorems of the named files rest."""
+    """Return the text of a Coq file that prints the axioms on which the theorems of the files ``names`` rest.
+
+    When Coq reads it, it prints all these axioms together.
+    """
     lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
     return "\n".join([
         "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
@@ -86,7 +89,10 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the named Coq files and all files that these require; each file comes after the files that it needs."""
+    """Return ``names``, names of Coq files, and the names of all files that these require.
+
+    Each name comes after the names of the files that it needs; ``rotation.v``, which every file needs, is left out.
+    """
     files_needed = set(names)
     for name in names:
         files_needed |= set(coq_file(name).requires) - {RULES}
@@ -94,7 +100,7 @@ def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return the named Coq files (default: all) and all files that checking them needs, as a map from name to text.
+    """Return a map from file name to text for Coq: the files ``names`` (default: all) and all files that they need.
 
     The map includes ``_CoqProject``, a list of all files for the build tool ``coq_makefile``.
     """
@@ -106,7 +112,7 @@ def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
 
 
 def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
-    """Return the name of the file with the theorem about a kernel, and the theorem; None if there is no theorem."""
+    """Return (name of the Coq file, theorem) for the theorem about a kernel; None if there is no theorem about it."""
     for name, (beginnings, _) in _FILES.items():
         if kernel.startswith(beginnings):
             for theorem in coq_file(name).theorems:

@@ -33,7 +33,10 @@ def coq_expression(expression: Expr) -> str:
 
 
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression and the precedence of its outermost operation, which decides on brackets."""
+    """Return the Coq text of an expression, and the precedence (an int) of its outermost operation.
+
+    The caller puts the text in brackets if the operation around it has a higher precedence.
+    """
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -108,7 +111,10 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return the Coq text of formulas as a vector, quaternion or matrix (row by row), or of a single formula."""
+    """Return the Coq text of several formulas as the components of one vector, quaternion or matrix (row by row).
+
+    A single formula is returned as its own text.
+    """
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -124,7 +130,10 @@ def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> 
 
 
 def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the Coq definition of a function of real variables, whose value is a vector, quaternion or matrix."""
+    """Return the Coq definition of a function ``name`` of real variables, one formula for each component of its value.
+
+    The value is a vector, quaternion or matrix (row by row), according to the number of formulas.
+    """
     return _defined(name, variable_names, len(formulas), _record(formulas))
 
 

@@ -38,12 +38,18 @@ class Unread(InputError):
 
 
 def key(latex: str) -> str:
-    """Return the key under which a LaTeX name is looked up: the name without braces and spaces."""
+    r"""Return a LaTeX name without braces and spaces:
+
+    ``\omega_{b}`` -> ``\omega_b``, the key of its meaning in a map.
+    """
     return latex.translate(UNMARKED)
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text, which ``, \quad`` separates; each is the list of its sides as text."""
+    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` -> ``[["a", "b"], ["c"]]``.
+
+    A comma before ``\quad`` outside brackets separates equations.
+    """
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
@@ -92,7 +98,7 @@ class _Interpreter(Cursor):
         self.time = names.get(TIME, "t")
 
     def value(self, node: Node) -> Any:
-        """Return the value of a complete row of LaTeX, or of the argument of a command."""
+        """Return the value, Expr or Matrix, of parsed LaTeX: a whole formula, or the argument of a command."""
         return self.inside(node, self.sum)
 
     # -- sums and products ------------------------------------------------------------------------------------------
@@ -185,12 +191,18 @@ class _Interpreter(Cursor):
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        r"""Return whether the next item is the index ``\times``, the mark of a vector's cross-product matrix."""
+        r"""Return whether the next item is the index ``\times``, which marks a cross-product matrix:
+
+        ``[\omega]_\times``.
+        """
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
     def evaluated(self, dot: Node) -> Any:
-        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``."""
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``.
+
+        ``dot`` is the item ``\left.``, which has been read; its position is used in error messages.
+        """
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
@@ -233,10 +245,11 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        r"""Return the value of a name in a special font.
+        r"""Return the value of a name that LaTeX prints in a special font, such as ``\mathbf{1}``, the identity matrix.
 
-        The name may be a function that is applied to the matrix after it, such as the trace; the identity
-        ``\mathbf{1}``; or a name with a declared meaning.
+        The name may also be a function of the matrix after it, such as the trace ``\operatorname{tr}``, or any name
+        with a
+        declared meaning.
         """
         word, place = _text(font.inside), self.index
         if word == "1":
@@ -293,7 +306,11 @@ class _Interpreter(Cursor):
         raise Unread(text)
 
     def name_parts(self) -> Iterator[str]:
-        """Yield the parts of a name: a letter, a command or an accented letter, then its indices and primes."""
+        r"""Yield the parts of the name at this place as text: a letter, command or accented letter, then indices and
+        primes.
+
+        ``\omega_b'`` gives ``\omega``, ``_b`` and ``'``.
+        """
         item = self.next()
         if not isinstance(item, Token | Accent | Font) or item.text in ENDS:
             raise self.fail("a name", item)
@@ -314,7 +331,10 @@ READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
 
 
 def _text(node: Node) -> str:
-    """Return a part of a name as text without braces, as it appears in the key of the name."""
+    r"""Return a part of a name, given as parsed LaTeX, as text without braces: ``\dot{x}`` -> ``\dotx``.
+
+    Names are looked up by texts of this form, see :func:`key`.
+    """
     if isinstance(node, Row):
         return "".join(map(_text, node.items))
     if isinstance(node, Scripts):
@@ -325,7 +345,10 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return the rest of a group or token after the mark at its start; None if it does not start with the mark."""
+    """Return what follows ``mark`` in a group:
+
+    ``x`` in ``{d x}`` after the mark ``d``; None if it begins with another item.
+    """
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
@@ -342,7 +365,7 @@ def _as_matrix(value: Any) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return the sum of two values; a number added to a matrix means that multiple of the identity matrix."""
+    """Return ``left + right``; a number added to a square matrix means that multiple of the identity matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
@@ -352,7 +375,7 @@ def _added(left: Any, right: Any) -> Any:
 
 
 def _multiplied(left: Any, right: Any) -> Any:
-    """Return the product of two values: the matrix product, or the quaternion product for two columns of four."""
+    """Return ``left * right``: the matrix product, or for two columns of shape (4, 1) the quaternion product."""
     if isinstance(left, MatrixBase) and isinstance(right, MatrixBase) and left.shape == right.shape == (4, 1):
         a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])
         return Matrix([a * b - u.dot(v), *(a * v + b * u + u.cross(v))])

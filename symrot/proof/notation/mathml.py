@@ -1,8 +1,8 @@
-"""Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages use.
+"""Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages of derivations use.
 
-The translation is used for HTML and for breaking lines. A formula becomes a row of items; an item has its LaTeX, its
-MathML, an estimate of its width in letters, and a kind, which says whether a line may be broken before it. Unknown
-LaTeX raises InputError.
+The translation is used for HTML and for breaking lines. A formula becomes a row of items; an item is one symbol,
+fraction, bracketed group or the like. It has its LaTeX, its MathML, an estimate of its width in letters, and a kind,
+which says whether a line may be broken before it. Unknown LaTeX raises InputError.
 """
 
 from collections.abc import Callable, Iterator
@@ -49,9 +49,10 @@ SMALL = 0.75  # scripts, relative to the line
 
 
 class Item(NamedTuple):
-    """One part of a formula in a row: MathML, width in letters, LaTeX.
+    r"""One part of a formula in a row, such as a symbol or a fraction: its MathML, its width in letters, and its LaTeX.
 
-    ``kind`` is "relation", "sign", "function" or "".
+    ``kind`` is "relation" for ``=`` or ``<``, "sign" for a plus or minus between two terms, "function" for a name such
+    as ``\sin``, and "" for everything else. Lines are broken before relations and signs.
     """
 
     mathml: str
@@ -93,7 +94,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a row of the tree; the LaTeX of an item extends up to the next item."""
+        """Return the items of a parsed formula, see :class:`Item`; the LaTeX of an item extends up to the next item."""
         items: list[Item] = []
         kind = "sign"
         marked = False
@@ -115,15 +116,18 @@ class _Translation:
         return items
 
     def argument(self, node: Node) -> list[Item]:
-        """Return the argument of a command as a list: all items of a group in braces, or a single item."""
+        """Return the argument of a command as a list: all items of a group ``{..}``, or the item of a single node."""
         return self.row(node) if isinstance(node, Row) else [self.item(node)]
 
     def group(self, node: Node) -> Item:
-        """Return the argument of a command as a single item."""
+        """Return the argument of a command as one item, such as the numerator of a fraction, ``{a + b}``."""
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return the item of a node. A plus or minus sign is binary after an operand, and a prefix everywhere else."""
+        """Return the item of one node of parsed LaTeX: its MathML and width.
+
+        A plus or minus sign is binary if ``after_operand`` is true (an operand is to its left), otherwise a prefix.
+        """
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
@@ -217,7 +221,10 @@ def _fence(mark: str, form: str) -> str:
 
 
 def _letter(letter: str, variant: str) -> str:
-    """Return the Unicode character of a letter in a font, since MathML no longer has most font attributes."""
+    """Return the Unicode character of a letter or digit in a font: ("R", "script") -> "ℛ"; other characters unchanged.
+
+    ``variant`` is the font: "script", "bold", .. Browsers no longer support the attributes of MathML for most fonts.
+    """
     if not (letter.isascii() and letter.isalnum()):
         return letter
     if variant == "script":
@@ -240,7 +247,7 @@ def _joined(items: list[Item]) -> Item:
 
 
 def read(latex: str) -> list[Item]:
-    """Return a LaTeX formula as a row of items: parts with MathML, a width, and possible line breaks.
+    """Return a LaTeX formula as a row of items, see :class:`Item`, which can be joined to MathML or broken into lines.
 
     Raises
     ------
@@ -251,7 +258,7 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return the lines of a formula, each at most ``width`` letters wide if possible.
+    """Return the lines of a LaTeX formula, each a list of items, at most ``width`` letters wide if possible.
 
     Lines are broken before relations such as ``=``, and if that is not enough, before plus and minus.
     """
@@ -273,7 +280,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row of items as a single item; a long sum becomes several lines inside this item."""
+    """Return a row of items, such as a numerator, as a single item; a row wider than WIDEST is broken into lines."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -282,7 +289,10 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Yield the parts of a row of items; a new part starts at each item of the given kind."""
+    """Yield the items in consecutive lists, the second and later of which begin with an item of ``kind``.
+
+    For the kind "relation", ``a = b + c = d`` gives ``a``, ``= b + c`` and ``= d``.
+    """
     piece: list[Item] = []
     for item in items:
         if item.kind == kind and piece:
@@ -293,7 +303,11 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a LaTeX formula as a MathML ``math`` element; a display that is too wide is broken into lines."""
+    """Return a LaTeX formula as the text of a MathML element ``<math>``.
+
+    If ``display`` is true the formula has lines of its own, and is broken if it is wider than ``width`` letters;
+    otherwise it stands inside a sentence and is never broken.
+    """
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:

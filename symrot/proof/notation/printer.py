@@ -42,9 +42,9 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
     _print_tanh = _print_sech = _print_of_angle
 
     def _print_MatrixBase(self, matrix: MatrixBase) -> str:
-        """Return the LaTeX of a matrix, with a common denominator of all entries in front.
+        """Return the LaTeX of a matrix; a denominator that all entries have in common is printed in front as 1/D.
 
-        The zero matrix is printed as 0, and the identity matrix as 1.
+        The zero matrix is printed as 0, and the identity matrix as a bold 1.
         """
         if matrix.is_zero_matrix:
             return "0"
@@ -92,5 +92,5 @@ _PRINTER = PagePrinter({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac"
 
 
 def formula(side: Any) -> str:
-    """Return the LaTeX of an expression or matrix on one line; return a str, which must be LaTeX, unchanged."""
+    """Return the LaTeX of an Expr or Matrix on one line; a str must be LaTeX and is returned unchanged."""
     return side if isinstance(side, str) else str(_PRINTER.doprint(side)).replace("\n", " ")

@@ -62,14 +62,14 @@ FORM = (
 
 
 def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict[str, str]:
-    """Return file name -> text of a book.
+    """Return the files of a book in HTML that has all the pages, as a map from file name to text.
 
     Parameters
     ----------
     title, about : str
         The title of the book, and a paragraph for the page of contents.
     chapters : mapping of str to sequence of Page
-        Title of a chapter -> its pages, in reading order.
+        A map from the title of a chapter to its pages, in reading order.
 
     Returns
     -------
@@ -104,14 +104,20 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
 
 
 def _turning(before: Page | None, after: Page | None) -> str:
-    """Return HTML links to the previous page, the table of contents and the next page of the book."""
+    """Return a line of HTML with links to the page ``before``, the table of contents and the page ``after``.
+
+    ``before`` is None on the first page of the book, and ``after`` on the last: then that link is missing.
+    """
     back = f'<a rel="prev" href="{before.name}.html">← {prose(before.title)}</a>' if before else "<span></span>"
     on = f'<a rel="next" href="{after.name}.html">{prose(after.title)} →</a>' if after else "<span></span>"
     return f'<nav class="book">{back}<a href="{CONTENTS}">Contents</a>{on}</nav>'
 
 
 def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
-    """Yield a paragraph in HTML with links to the other ``pages`` that refer to ``page``, if there are any."""
+    """Yield one paragraph in HTML, "Pages that refer to this one: ..", with links to those ``pages``.
+
+    Nothing is yielded if no other page links to ``page``.
+    """
     link = f"]({page.name}.md)"
     others = [other for other in pages if other is not page and any(link in text for _, _, text in _words(other))]
     if others:
@@ -156,7 +162,7 @@ def _words(page: Page) -> Iterator[tuple[str, str, str]]:
 
 
 def _plain(text: str) -> str:
-    """Return Markdown as text without markup; formulas keep their letters."""
+    r"""Return the text of Markdown without markup, for the search: ``**Spin** $\\omega_3$`` -> "Spin ω3"."""
     return unescape(re.sub(r"<[^>]*>", "", prose(text)))
 
 

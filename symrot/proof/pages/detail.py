@@ -1,4 +1,8 @@
-"""One step of a derivation as a page, optionally with all rewritings that lead from its left to its right side."""
+"""One step of a derivation as a page of its own.
+
+The page may also show each rewriting of the normal form: the expressions that lead from the left side of the step to
+its right side.
+"""
 
 from sympy import MatrixBase, factor
 
@@ -23,14 +27,16 @@ LEFT_OUT = (
 
 
 def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
-    """Return a page with one step; with ``detail``, also every expression between the two sides of its equation.
+    """Return a page with one step of the page ``whole``.
 
     Parameters
     ----------
     whole : Page
+        The page of a derivation.
     number : int
         The number of the step; the first is 1.
     detail : bool
+        Whether the new page also shows every expression between the two sides of the step's equation.
 
     Raises
     ------
@@ -61,7 +67,11 @@ def _in_detail(step: Step) -> list[Passage]:
 
 
 def _on_board(step: Step) -> list[Passage]:
-    """Return the proof that a teacher writes on the board: a chain of expressions with their reasons."""
+    """Return ``step.board``, the proof as a teacher writes it, as paragraphs: a reason, and the next expression of a
+    chain.
+
+    The first equation begins with the left side of the step, the others with ``=``.
+    """
     left = step.named or formula(step.left)
     passages = []
     for words, text in step.board:
@@ -71,7 +81,10 @@ def _on_board(step: Step) -> list[Passage]:
 
 
 def _on_one_screen(passages: list[Passage]) -> list[Passage]:
-    """Return the first paragraphs, as many as fit on a screen, and a sentence that says that the rest is left out."""
+    """Return the first of the paragraphs, as many as fit on a screen.
+
+    If some do not fit, the last paragraph says how many expressions are left out.
+    """
     screen: list[Passage] = []
     lines = letters = 0
     for passage in passages:
@@ -127,9 +140,10 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return an equation ``multiple of a hypothesis = 0`` for each multiple that one rewriting subtracts.
+    """Return the equations below a rewriting: ``(multiple, "0")`` for each multiple of a hypothesis that it subtracts.
 
-    The result is empty if the multiples are short enough for the sentence that explains the rewriting.
+    ``link`` is the rewriting; a hypothesis is an expression that is zero, so its multiples are zero too. The result is
+    empty if the multiples are short enough for the sentence that explains the rewriting.
     """
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)

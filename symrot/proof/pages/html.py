@@ -49,9 +49,11 @@ a { color: inherit; }
 
 
 def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
-    """Return a page as an HTML document, with the HTML ``top`` above it, ``bottom`` below it, and more CSS (``style``).
+    """Return a page as the text of an HTML document.
 
-    The document is self-contained unless ``font`` is the address of the file of the mathematical font.
+    ``top`` and ``bottom`` are HTML above and below the page, such as links of a book, and ``style`` is CSS after the
+    usual rules. ``font`` is the address of the file of the mathematical font; if it is empty, the font is embedded, and
+    the document is self-contained.
     """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     for opening in page.opening:
@@ -99,7 +101,10 @@ def _figure(figure: Figure) -> str:
 
 
 def _table(table: Table, number: int) -> str:
-    """Return a table in HTML; the row that proves step N can be linked to as ``#step-N`` of its first step."""
+    """Return a table of a page in HTML; ``number`` is the number of the last step before the table.
+
+    A row with steps has the anchor ``step-N``, where N is the number of its first step, so that a link can lead to it.
+    """
     head, *rows = table_rows(table, number)
     lines = [f"<tr>{''.join(f'<th>{prose(cell)}</th>' for cell in head)}</tr>"]
     for cells, (_, steps) in zip(rows, table.rows, strict=True):
@@ -114,7 +119,10 @@ def _passage(passage: Passage) -> list[str]:
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:
-    """Return a self-contained HTML document with a title, the parts of its body, and more CSS (``style``)."""
+    """Return a self-contained HTML document;
+
+    ``parts`` are the elements of its body, ``style`` is CSS after the usual rules.
+    """
     title = escape(re.sub(r"[$*`]", "", title))
     head = (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -125,12 +133,12 @@ def document(title: str, parts: Iterable[str], style: str = "") -> str:
 
 
 def display(latex: str) -> str:
-    """Return a LaTeX formula as HTML on a line of its own."""
+    """Return a LaTeX formula as HTML on lines of its own, in MathML."""
     return f'<div class="display">{mathml(latex, display=True)}</div>'
 
 
 def _raised(prose: str) -> str:
-    """Return text with units as HTML, in which the exponents of the units are superscripts."""
+    """Return text with raised exponents in HTML: ``kg m^2`` -> ``kg m<sup>2</sup>``."""
     return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 
@@ -145,7 +153,7 @@ PIECES = re.compile(r"\$`([^`]+)`\$|\$([^$]+)\$|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\
 
 
 def prose(text: str) -> str:
-    """Return Markdown prose as HTML: formulas, code, links to other derivations, emphasis."""
+    """Return Markdown prose as HTML: formulas between ``$``, code, links to other derivations, and emphasis."""
     markup, place = "", 0
     for match in PIECES.finditer(text):
         markup += escape(text[place : match.start()], quote=False)

@@ -83,7 +83,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
 
 
 def _body(page: Page) -> Iterator[str]:
-    """Yield the paragraphs of a page, without its title."""
+    """Yield the paragraphs of a page as LaTeX, in order, without the page's title."""
     parts: list[str] = []
     parts += [_figure(item) if isinstance(item, Figure) else _passage(item) for item in page.opening]
     if page.about:
@@ -117,14 +117,20 @@ def _body(page: Page) -> Iterator[str]:
 
 
 def _figure(figure: Figure) -> str:
-    """Return a figure in LaTeX: its caption, above it the picture if its PDF file exists when LaTeX runs."""
+    """Return a figure in LaTeX: its caption, and above it the picture.
+
+    The picture is the PDF file in ``figures``; it is left out if that file does not exist when LaTeX runs.
+    """
     path = figure.file.removesuffix(".svg")
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
 
 
 def _table(table: Table, number: int) -> str:
-    """Return a table in LaTeX, which may go over several pages."""
+    """Return a table of a page in LaTeX, which may go over several sheets of paper.
+
+    ``number`` is the number of the last step before the table.
+    """
     head, *rows = (" & ".join(map(_prose, cells)) + r" \\[4pt]" for cells in table_rows(table, number))
     columns = "l" * (head.count(" & ") + 1)
     body = "\n".join(rows)

@@ -64,19 +64,23 @@ MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
 
 
 def host_safe(part: str) -> str:
-    """Return a paragraph whose inline formulas are quoted as ``$`...`$`` where Markdown would corrupt them."""
+    """Return a paragraph of Markdown whose inline formulas survive on a code-hosting site.
+
+    There Markdown would read characters such as ``_`` or ``*`` in a formula ``$...$`` as emphasis; such formulas are
+    quoted as ``$`...`$``. Displayed formulas, which begin with ``$$``, are unchanged.
+    """
     if part.startswith("$$"):
         return part
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
 
 
 def inline(text: str) -> str:
-    """Return Markdown of :func:`markdown` in which inline formulas are between plain dollar signs, as in notebooks."""
+    """Return the Markdown that :func:`markdown` printed, with ``$`x`$`` replaced by ``$x$``, as notebooks expect it."""
     return re.sub(r"\$`([^`]+)`\$", r"$\1$", text)
 
 
 def _contents(page: Page) -> Iterator[str]:
-    """Yield the table of contents of a page with many sections: one line of links; nothing for other pages."""
+    """Yield one line with links to all sections of a page that has more than MANY_SECTIONS; nothing for other pages."""
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
         anchors = (re.sub("[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles)
@@ -85,5 +89,5 @@ def _contents(page: Page) -> Iterator[str]:
 
 
 def display(text: str) -> str:
-    """Return a LaTeX formula as Markdown on lines of its own."""
+    """Return a LaTeX formula as Markdown on lines of its own, between lines ``$$``."""
     return f"$$\n{text}\n$$"

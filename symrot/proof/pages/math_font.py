@@ -14,18 +14,21 @@ FOLDER = Path(__file__).parent / "font"
 
 
 def content() -> bytes:
-    """Return the font file."""
+    """Return the bytes of the font file, in the format WOFF2."""
     return (FOLDER / FILE).read_bytes()
 
 
 def characters() -> frozenset[str]:
-    """Return the characters that the font has."""
+    """Return the set of characters for which the font has a shape."""
     return frozenset(chr(int(code, 16)) for code in (FOLDER / "characters.txt").read_text("ascii").split())
 
 
 @cache
 def face(source: str = "") -> str:
-    """Return CSS rules that show formulas in the font; ``source`` is the address of its file, or empty to embed it."""
+    """Return CSS rules by which a browser shows formulas in the font.
+
+    ``source`` is the address of the font file; if it is empty, the rules contain the font itself.
+    """
     address = source or f"data:font/woff2;base64,{b64encode(content()).decode('ascii')}"
     return (
         f'@font-face {{ font-family: "symrot math"; src: url("{address}") format("woff2"); }}\n'

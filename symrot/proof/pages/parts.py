@@ -23,10 +23,11 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps that repeat the claim and the reason of an earlier step of the page.
+    """Return the numbers of the steps whose reason is not printed, since an earlier step has the same claim and reason.
 
     A page may prove one result for many sequences of angles, or many solids. If at least :data:`MANY` steps have the
-    same reason and the same claim, apart from formulas and names of sequences, only the first one prints the reason.
+    same reason and the same claim, apart from formulas and names of sequences such as ``ZXZ``, only the first of them
+    prints the reason.
     """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
@@ -51,7 +52,10 @@ def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
 
 
 def _hypothesis(zero: Expr) -> str:
-    """Return a hypothesis ``P - Q = 0`` as ``P = Q``, with the negative terms moved to the right."""
+    """Return a hypothesis, an expression that is zero, as the LaTeX of an equation: ``a - b`` -> ``a = b``.
+
+    The terms with a minus sign are moved to the right.
+    """
     terms = zero.expand().as_ordered_terms()
     right = [-term for term in terms if term.could_extract_minus_sign()]
     left = [term for term in terms if not term.could_extract_minus_sign()]
@@ -63,7 +67,7 @@ def _list(formulas: Iterable[str]) -> str:
 
 
 def units(page: Page) -> str:
-    """Return a sentence that gives the unit of every symbol on the page."""
+    """Return a sentence with the unit of every symbol on the page, or an empty text if no symbol has a known unit."""
     sides: list[Any] = [side for step in page.steps for side in (step.left, step.right)]
     passages = (item for item in page.items if isinstance(item, Passage))
     sides += [side for passage in passages for pair in passage.equations for side in pair]
@@ -77,9 +81,11 @@ def units(page: Page) -> str:
 
 
 def table_rows(table: Table, number: int) -> Iterator[tuple[str, ...]]:
-    """Yield the head of a table and its rows, Markdown; ``number`` is the number of the step before the table.
+    """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown.
 
-    If steps prove the rows, the first column has their numbers.
+    If the table's rows have proven steps, a first column ``Steps`` has their numbers, such as ``3`` or ``3–5``. Steps
+    are
+    counted from ``number``, the number of the last step before the table.
     """
     yield ("Steps", *table.head) if table.is_proven else table.head
     for cells, steps in table.rows:
@@ -103,6 +109,9 @@ def footer(page: Page) -> str:
 
 
 def passage_equations(passage: Passage) -> Iterator[str]:
-    """Yield the LaTeX of a paragraph's equations; a pair with an empty left side continues the equation before it."""
+    """Yield the equations of a paragraph as LaTeX, ``left = right``.
+
+    A pair with an empty left side continues the equation before it: ``= right``.
+    """
     for left, right in passage.equations:
         yield f"{formula(left)} = {formula(right)}".lstrip()
