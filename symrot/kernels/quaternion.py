@@ -131,7 +131,7 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return formulas that select, when they are evaluated, the result of :func:`_branch` with the larger ``4 q_k^2``."""
+    """Return formulas that select the result of :func:`_branch` with the larger ``4 q_k^2`` when they are evaluated."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
