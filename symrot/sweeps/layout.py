@@ -71,7 +71,7 @@ class Header:
     rows: int
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return for each chunk the pair (start, stop): the index of its first trajectory, and the index after its last."""
+        """Return for each chunk the pair (start, stop): index of its first trajectory, and index after its last."""
         return [(start, min(start + self.rows, self.count)) for start in range(0, self.count, self.rows)]
 
 

@@ -172,7 +172,7 @@ class ExactPath:
         )
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near ``t`` at which omega has its initial value; None if Newton's method does not converge."""
+        """Return the time near ``t`` at which omega has its initial value; None if Newton's method diverges."""
         start = self.start[: self.rates]
         self.state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]
