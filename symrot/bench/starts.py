@@ -289,7 +289,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the times per trajectory of ensembles of up to ``most`` motions, in closed form and by steps, as a table."""
+    """Print the times per trajectory of ensembles of up to ``most`` motions, in closed form and by steps."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)

@@ -303,7 +303,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return the ratios of other times to symrot's, by the title of each column."""
+    """Print the table of one motion; return the ratios of other times to symrot's, by title of the column."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]

@@ -33,7 +33,7 @@ LARGEST_CHUNK = 4_000_000  # samples in a chunk, about 300 MB with all quantitie
 
 @dataclass(frozen=True)
 class Variable:
-    """One array of the results: its name, its dimensions after the first (``trajectory``), its unit, frame and meaning."""
+    """One array of the results: its name, its dimensions after the first (``trajectory``), unit, frame and meaning."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -60,7 +60,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Header:
-    """The data with which a store is created: identity of the sweep, its arrays, and number of trajectories in a chunk."""
+    """The data with which a store is created: identity of the sweep, arrays, number of trajectories in a chunk."""
 
     identity: Mapping[str, str]  # what determines the results, by name
     scene: str

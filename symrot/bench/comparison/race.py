@@ -65,7 +65,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the total time, s, of all rounds, from the first run of each entry; for a progress message."""
+    """Return an estimate of the total time, s, of all rounds, from the first run of each entry."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 

@@ -104,7 +104,7 @@ def _inline_display(latex: str) -> str:
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return the data with which the script of the page grades numbers, by question (``1a``): answer, slips and unit."""
+    """Return the data with which the script of the page grades numbers, by question (``1a``): answer, slips, unit."""
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,

@@ -19,7 +19,7 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return the angles and rates that occur in ``formulas`` as given quantities, with the numbers that they may have."""
+    """Return the angles and rates that occur in ``formulas`` as given quantities with possible numbers."""
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(
