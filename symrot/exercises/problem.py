@@ -33,7 +33,7 @@ class Quantity:
 
 
 def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
-    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers with spaces between, as in ``"0.2 0.3 1/2"``."""
+    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers, as in ``"0.2 0.3 1/2"``."""
     return Quantity(symbol, tuple(numbers.split()), unit, words)
 
 
