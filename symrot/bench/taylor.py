@@ -294,7 +294,7 @@ def raced(
 
 
 def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
-    """Return the fastest run of the contestants ``names`` whose error is at most ``error``, or None if there is none."""
+    """Return the fastest run of the contestants ``names`` whose error is at most ``error``, or None."""
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: min(run.seconds), default=None)
 
