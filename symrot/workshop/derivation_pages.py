@@ -157,8 +157,9 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
 def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> list[Path]:
     """Write a few derivations into a directory for students, and return the paths.
 
-    Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions are those of
-    :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each page.
+    Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions
+    are those of :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each
+    page.
     """
     if form != "markdown":
         paths = write_pages(directory, form, chosen)
