@@ -81,7 +81,7 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
 
 
 def names() -> tuple[str, ...]:
-    """Return the names of all derivations, in reading order."""
+    """Return the names of all derivations, such as ``poinsot``, in reading order."""
     return tuple(name for part in READING_ORDER.values() for name in part)
 
 

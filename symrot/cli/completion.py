@@ -33,7 +33,8 @@ NAMES: Mapping[str, Callable[[], Iterable[str]]] = {
 def completers(parser: ArgumentParser) -> dict[str, Action]:
     """Give a completer to each argument that takes a name, such as SCENE; return these arguments by their names.
 
-    The arguments of all subcommands of the parser are included.
+    A completer is the function that proposes words when the user presses Tab. The arguments of all subcommands of the
+    parser are included.
     """
     from argcomplete.completers import FilesCompleter
 

@@ -138,7 +138,8 @@ def _show(options: Namespace) -> int:
 def _trajectory(propagator: Any, options: Namespace) -> Any:
     """Compute the motion that a command asks for and return its trajectory, or None after Ctrl-C.
 
-    If the propagation ends early, the samples so far are written to the file of ``--out``.
+    ``options`` are the parsed arguments of the command. If the propagation ends early, the samples so far are written
+    to the file of ``--out``.
     """
     from symrot.propagation.progress import reporting
 
@@ -166,7 +167,10 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
 
 
 def _write_partial(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Write the samples before an error to the file of ``--out``; return text for the error message that says so."""
+    """Write the samples before an error to the file of ``--out``; return text for the error message that says so.
+
+    The text is empty, and no file is written, if there are no samples or the command has no ``--out``.
+    """
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
@@ -566,7 +570,10 @@ def _check_command(arguments: Sequence[str]) -> None:
 
 
 def _check_unknown(command: str, unknown: Sequence[str]) -> None:
-    """Raise InputError for the first word that a command does not know; it suggests the most similar option."""
+    """Raise InputError for the first of the words ``unknown``, which the command's parser did not recognise.
+
+    The message suggests the most similar option. If ``unknown`` is empty, nothing happens.
+    """
     if not unknown:
         return
     own = _Parser()
@@ -579,7 +586,10 @@ def _check_unknown(command: str, unknown: Sequence[str]) -> None:
 
 
 def _silence(stream: Any) -> None:
-    """Redirect a stream to the null device after its reader has ended, so that Python closes it without an error."""
+    """Redirect a stream to the null device after the program that reads it has ended, as ``head`` does after ten lines.
+
+    Python can then close the stream at exit without an error.
+    """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

@@ -37,7 +37,10 @@ def say_json(data: Any) -> None:
 
 
 def progress(text: str) -> None:
-    """Show a progress message on one line of the terminal; an empty text clears it."""
+    """Show a progress message on one line of the terminal, over the previous message; an empty text clears the line.
+
+    If stderr is not a terminal, nothing is written.
+    """
     if sys.stderr.isatty():
         try:
             width = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)

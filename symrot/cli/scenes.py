@@ -18,6 +18,6 @@ def scene_options(parser: ArgumentParser) -> None:
 
 
 def load(options: Namespace) -> "symrot.Scene":
-    """Return the scene that the options of a command name, with the values of ``--set``."""
+    """Return the scene that a command's options name, with the values of ``--set`` in place of those in its file."""
     scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
     return scene.with_(settings(options.settings)) if options.settings else scene

@@ -20,7 +20,10 @@ _TIMES = "'linspace(0, 10, 11)' or 'values(0, 1, 5)'"
 
 
 def _vary(texts: list[str]) -> dict[str, Any]:
-    """Return, by name, the distributions and grids in texts such as ``omega_1 ~ normal(0, 0.1)``."""
+    """Return, by the name of the varied quantity, the distributions and grids of the options ``--vary``.
+
+    An example of one of the ``texts`` is ``omega_1 ~ normal(0, 0.1)``, whose key in the result is ``omega_1``.
+    """
     from symrot.sweeps.laws import Distribution, read_law
 
     laws: dict[str, Any] = {}
@@ -57,9 +60,10 @@ def _times(text: str | None) -> Any:
 
 @contextmanager
 def _bar() -> Iterator[Callable[[int, int], None]]:
-    """Show how many trajectories are complete, how many per second, and the time left.
+    """Provide a function that shows the progress of a sweep: complete trajectories, their rate, the time left.
 
-    tqdm draws the bar if it is installed; otherwise one line shows the number.
+    Use: ``with _bar() as show: ..``. The function takes the number of complete trajectories and the number of all. tqdm
+    draws the bar if it is installed; otherwise one line shows the number.
     """
     try:
         from tqdm import tqdm

@@ -22,7 +22,7 @@ def unit(vector: ArrayLike) -> Floats:
 
 
 def basis(normal: ArrayLike) -> tuple[Floats, Floats]:
-    """Return two unit vectors that form a right-handed triad with a normal; the second points upward if possible."""
+    """Return two unit vectors that form a right-handed triad with ``normal``; the second points upward if possible."""
     n = unit(normal)
     helper = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.99 else np.array([1.0, 0.0, 0.0])
     first = unit(np.cross(helper, n))
@@ -66,7 +66,10 @@ def outline(shape: Floats, view: View) -> Floats:
 
 
 def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
-    """Return, for each point outside the ellipsoid ``x · shape x = 1``, whether the ellipsoid leaves it visible."""
+    """Return for each point whether the ellipsoid ``x · shape x = 1`` does not hide it from the viewer.
+
+    The points are outside the ellipsoid; figures draw the hidden ones dashed.
+    """
     ahead = shape @ view.toward
     square, middle = view.toward @ ahead, points @ ahead
     rest = np.einsum("ni,ij,nj->n", points, shape, points) - 1.0
@@ -82,9 +85,9 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return points of a cone's rim, and the two lines from its apex (the origin) that form its visible outline.
+    """Return points of the rim of a cone with its apex at the origin, and the two lines that form its visible outline.
 
-    There are no such lines if the line of sight lies inside the cone. The half angle is in rad.
+    The half angle is in rad. There are no such lines (an empty list) if the line of sight lies inside the cone.
     """
     n, radius = unit(axis), length * np.sin(half_angle)
     rim = circle(length * np.cos(half_angle) * n, n, radius)

@@ -24,7 +24,10 @@ VIEW = View(azimuth=58, elevation=24, scale=120)
 
 
 def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion: Any = None) -> Trajectory:
-    """Return the torque-free motion of a body with given principal moments, kg m^2, and initial omega, rad/s."""
+    """Return the torque-free motion of a body with given principal moments, kg m^2, and initial omega, rad/s.
+
+    ``quaternion`` is the initial attitude; without it, body axes and space axes agree at the start.
+    """
     scene = {
         "schema": 1,
         "title": "free body of a figure",
@@ -36,7 +39,10 @@ def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion:
 
 
 def one_period(moments: ArrayLike, start: Floats) -> Trajectory:
-    """Return a free motion over one period of omega; exactly one component of the initial omega must be zero."""
+    """Return a free motion over one period of omega, whose initial value is ``start``, rad/s, in body components.
+
+    Exactly one component of ``start`` must be zero, because the zeros of this component mark the period.
+    """
     (zero,) = np.flatnonzero(start == 0.0)
     times = np.linspace(0.0, 80.0, 4001)
     component = free_motion(moments, start, times).omega[:, zero]
@@ -91,9 +97,10 @@ def poinsot() -> Picture:
 
 
 def polhode_curves() -> tuple[list[Floats], Floats]:
-    """Return several polhodes and the two curves of the separatrix, in rad/s and body axes, for the kinetic energy 1/2.
+    """Return several polhodes, and the two curves of the separatrix, which separates polhodes about axes 1 and 3.
 
-    Each curve has the shape (n, 3) and lies on the energy ellipsoid of the moments :data:`MOMENTS`.
+    Each curve has the shape (n, 3), in rad/s and body axes, and lies on the ellipsoid of the kinetic energy 1/2 for the
+    moments :data:`MOMENTS`.
     """
     axes = 1 / np.sqrt(MOMENTS)
     starts = []
@@ -129,7 +136,7 @@ def polhodes() -> Picture:
 
 
 def _principal_axes(picture: Picture, view: View, axes: Floats, reach: float = 0.32) -> None:
-    """Draw the parts of the principal axes that are outside an ellipsoid."""
+    """Draw the principal axes outside an ellipsoid with the semi-axes ``axes``, each over the length ``reach``."""
     for i, semi_axis in enumerate(axes):
         direction = np.eye(3)[i]
         picture.arrow(view, semi_axis * direction, (semi_axis + reach) * direction, f"ω_{i + 1}")
@@ -155,7 +162,8 @@ def momentum_sphere() -> Picture:
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
     """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
 
-    The moments are (A, C), across and along the axis; ``nutation``, rad, is the angle from L to the axis.
+    The moments are (A, C), about an axis across the symmetry axis and about it; ``nutation``, rad, is the angle from L
+    to the symmetry axis.
     """
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1

@@ -83,9 +83,10 @@ def principal_axes() -> Picture:
 
 
 def struck_velocities(offset: float, points: Floats) -> Floats:
-    """Return the transverse velocity of points of a rod just after a blow; mass, half length, impulse are 1.
+    """Return the velocity, perpendicular to the rod, of points of a rod just after a blow.
 
-    ``offset`` is the distance of the blow from the centre, ``points`` are distances from the centre.
+    Mass, half length and impulse are 1. ``offset`` is the distance of the blow from the centre, ``points`` are
+    distances from the centre.
     """
     moment = float(solid("rod", length=2).with_mass(1).inertia[0, 0])
     velocities: Floats = 1.0 + offset / moment * points
@@ -160,7 +161,10 @@ TEETH = {"sun": 24, "planet": 12, "ring": 48}
 def _gear(
     picture: Picture, plane: Plane, centre: Floats, teeth: int, start: float, style: str, inner: bool = False
 ) -> None:
-    """Draw the outline of a gear, filled unless ``inner``; its pitch radius in the plane is ``teeth/24``."""
+    """Draw the outline of a gear around ``centre``; its pitch radius in the plane is ``teeth/24``.
+
+    ``start`` is the angle of a tooth's edge, rad. An inner gear (the ring, with teeth inward) is not filled.
+    """
     angles = start + np.linspace(0, 2 * np.pi, teeth * 12 + 1)
     radius = teeth / 24 + 0.028 * np.tanh(4 * np.sin(teeth * (angles - start)))
     points = centre + radius[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)

@@ -176,9 +176,10 @@ def _number(value: float) -> str:
 
 
 def _runs(visible: NDArray[np.bool_]) -> Iterator[tuple[bool, slice]]:
-    """Split a line into visible and hidden sections; yield (visible, slice of points) for each.
+    """Split a line into visible and hidden sections, so that each is drawn in its own style.
 
-    Each section ends with the first point of the next section.
+    Yield for each section whether it is visible, and the slice of its points; each section ends with the first point of
+    the next, so that no gap remains.
     """
     changes = np.flatnonzero(np.diff(visible.astype(int))) + 1
     bounds = [0, *changes.tolist(), len(visible)]
@@ -198,7 +199,7 @@ def _width(text: str) -> float:
 
 
 def _spans(text: str) -> Iterator[str]:
-    """Yield the parts of a label as SVG text; letters that follow ``_`` become a subscript."""
+    """Yield the parts of a label as SVG text; letters that follow ``_`` become a subscript, as in ``ω_1``."""
     for number, piece in enumerate(re.split(r"_([\w⊥∥]+)", text)):
         if not number % 2:
             after = ' dy="-4"' if number else ""

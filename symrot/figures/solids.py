@@ -70,13 +70,17 @@ class Surface:
 
 
 def sized(name: str) -> Solid:
-    """Return a standard solid with the dimensions used in its figure."""
+    """Return the standard solid with this name, such as ``cylinder``, with the dimensions used in its figure."""
     names = [dimension.name for dimension in SHAPES[name].dimensions]
     return solid(name, **SPECIAL.get(name) or {each: SIZES[each] for each in names})
 
 
 def surface_of(body: Solid) -> Surface:
-    """Return the surface of a solid, computed from its map by setting one coordinate at a time to its limits."""
+    """Return the surface of a solid: one coordinate of the formula for its points after the other is set to its limits.
+
+    A solid is described by a formula for the position of its points in coordinates with limits, such as radius, angle
+    and height for a cylinder.
+    """
     symbols = [symbol for symbol, _, _ in body.limits]
     function = lambdify(symbols, list(body.position), "numpy")
     limits = [(float(low), float(high)) for _, low, high in body.limits]
@@ -113,7 +117,11 @@ def surface_of(body: Solid) -> Surface:
 
 
 def _grid(mapped: Any, limits: list[tuple[float, float]], face: dict[int, float], free: list[int]) -> list[Floats]:
-    """Return lines on a curved face; along each line only one coordinate of the map varies."""
+    """Return lines on a curved face; along each line only one coordinate of the solid varies.
+
+    ``mapped`` is the function from coordinates to a position, ``limits`` are the limits of all coordinates, ``face``
+    the coordinate that is constant on the face, by its index, and ``free`` the indices of the others.
+    """
     lines = []
     for constant, along in product(free, free):
         if constant == along:
@@ -177,7 +185,10 @@ def draw_solid(name: str) -> Picture:
 
 
 def _seen(picture: Picture, view: View, surface: Surface, line: Floats, style: str, hidden: str = "") -> None:
-    """Draw the visible parts of a line, and also its hidden parts if ``hidden`` names a style for them."""
+    """Draw the parts of ``line`` that the surface does not hide, in ``style``; draw the others in the style ``hidden``.
+
+    If ``hidden`` is empty, the hidden parts are not drawn.
+    """
     visible = ~surface.hides(line, view)
     if hidden:
         picture.curve(view, line, style, visible, hidden=hidden)
@@ -189,7 +200,10 @@ def _seen(picture: Picture, view: View, surface: Surface, line: Floats, style: s
 
 
 def solid_figures() -> tuple[Figure, ...]:
-    """Return the figures of all standard solids that have a map."""
+    """Return the figures of all standard solids whose points are given by a formula in coordinates (cylinder, ..).
+
+    Point masses have no such formula, and no figure.
+    """
     return tuple(_figure(name) for name, shape in SHAPES.items() if shape.position)
 
 

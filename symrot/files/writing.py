@@ -11,7 +11,10 @@ __all__ = ["check_target", "write"]
 
 
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
-    """Raise InputError if a file cannot be written at a path; the check is made before the content is computed.
+    """Raise InputError if a file cannot be written at ``path``; commands call this before they compute the content.
+
+    ``suffixes`` are the allowed endings, such as ``.csv``; ``option`` is the option that the message names, such as
+    ``--out``.
 
     Raises
     ------
@@ -40,7 +43,10 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Write a file at ``path``: ``content`` fills a temporary file, which is renamed to ``path`` when complete.
+    """Write a file at ``path`` that is complete or does not exist.
+
+    ``content`` is a function that writes the bytes into an open binary file. This file is temporary, in the same
+    folder, and is renamed to ``path`` when complete.
 
     Raises
     ------

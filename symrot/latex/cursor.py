@@ -40,7 +40,10 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return an InputError that names the expected text and the position of an item (default: the next item)."""
+        """Return an InputError whose message names the text ``expected`` and the position of ``item`` in the formula.
+
+        Without ``item`` it is the position of the next item. The caller raises the error.
+        """
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
@@ -68,7 +71,11 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Call ``read`` with the cursor at the start of another row or item, and return its value; then move back."""
+        """Call ``read`` with the cursor at the start of ``node``, and return its value; then move back.
+
+        ``read`` must read all items of ``node``; if some are left, the InputError says that ``closing`` was expected
+        there.
+        """
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
@@ -79,7 +86,10 @@ class Cursor:
         return value
 
     def listed(self, read: Callable[[], Value], closing: str) -> list[Value]:
-        """Parse values, separated by commas, up to the closing bracket; return them and move past the bracket."""
+        """Parse values, separated by commas, up to the bracket ``closing``; return the list and move past the bracket.
+
+        ``read`` parses one value.
+        """
         bars, self.open_bars = self.open_bars, ()
         values = [read()]
         while self.take(","):
@@ -89,9 +99,9 @@ class Cursor:
         return values
 
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
-        """Parse a value between two bars and return it.
+        """Parse a value between two bars, as in ``|x|``, by ``read``, and return it.
 
-        The cursor is after the opening bar, and moves past the closing bar.
+        The cursor is after the opening bar, and moves past the closing bar; ``bar`` is the text of the latter.
         """
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()

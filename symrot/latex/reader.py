@@ -37,7 +37,7 @@ class _Reader:
     def row(self, closing: str, *stops: str) -> Row:
         """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items.
 
-        ``closing`` is the text that the message expects if the formula ends too early.
+        ``closing`` is the text that the error message expects if the formula ends before such a token.
         """
         items: list[Node] = []
         first = token = self.tokens[self.place]
@@ -53,7 +53,10 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Parse a row of items and the token that closes it, such as a brace; return the row."""
+        """Parse a row of items and the token ``closing``, such as a brace, that closes it; return the row.
+
+        ``opening`` is the token before the row, which has been read; the row's position is that of this token.
+        """
         row = self.row(closing, closing)
         self.place += 1
         return Row(_with_old_fractions(row).items, opening.start, row.end)
@@ -146,7 +149,7 @@ class _Reader:
 
 
 def _with_old_fractions(row: Row) -> Row:
-    r"""Return a row in which ``above \over below`` has become a fraction."""
+    r"""Return a row in which TeX's ``above \over below`` has become a fraction; other rows are returned unchanged."""
     place = next((n for n, item in enumerate(row.items) if item.text == "\\over"), None)
     if place is None:
         return row

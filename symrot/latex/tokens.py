@@ -42,7 +42,7 @@ class Token(NamedTuple):
 
 
 def tokens(source: str, start: int = 0, stop: int | None = None) -> list[Token]:
-    """Return the tokens of a LaTeX text, without blanks; the last token has the kind ``end``.
+    """Return the tokens of ``source[start:stop]``, without blanks; the last token has the kind ``end``.
 
     A character that belongs to no other token becomes a token of its own, so that each interpreter can report its
     position.

@@ -114,7 +114,7 @@ def alone(node: Node) -> Node:
 
 
 def divided(row: Row, mark: str) -> list[Row]:
-    """Split a row at all tokens with the text ``mark``; return the rows between them."""
+    """Split a row at all tokens with the text ``mark``, such as ``&``; return the rows between these tokens."""
     rows, first = [], 0
     for place, item in enumerate(row.items):
         if item.text == mark:

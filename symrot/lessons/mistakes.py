@@ -38,7 +38,10 @@ def _verdict(claim: str, facts: tuple[str, ...], body: str) -> Verdict:
 
 
 def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
-    """Yield the paragraphs on a mistake: the wrong formula, a counterexample, a true formula, and the command."""
+    """Yield the paragraphs of the section "A common mistake": wrong formula, counterexample, true formula, command.
+
+    The command is the line for a shell with which the reader repeats the check.
+    """
     verdict = refutation(mistake)
     yield Passage(f"{mistake.words} They write `{mistake.claim}`.")
     facts = _facts(mistake.facts)
@@ -56,7 +59,11 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
 
 
 def _facts(facts: tuple[str, ...]) -> str:
-    """Return a sentence with the hypotheses of a claim: first the equations, then the names of positive symbols."""
+    """Return a sentence with the hypotheses of a claim: first the equations, then the names of positive symbols.
+
+    ``facts`` are the hypotheses as ``symrot check`` takes them, such as ``A == B`` or ``m > 0``. The sentence is empty
+    if there are none.
+    """
     equations = [f"`{text}`" for text in facts if not text.endswith(" > 0")]
     positive = [f"`{text.removesuffix(' > 0')}`" for text in facts if text.endswith(" > 0")]
     clauses = []

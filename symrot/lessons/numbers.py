@@ -26,7 +26,11 @@ LONGEST = 300  # letters of LaTeX of a formula that is printed again beside its 
 
 
 def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
-    """Yield the paragraphs of the section "With numbers": numbers of a scene, or a solved exercise."""
+    """Yield the paragraphs of the section "With numbers" at the end of a page.
+
+    If the lesson has numbers, they are formulas of the page evaluated for the lesson's scene; otherwise the paragraphs
+    show an exercise with its solution.
+    """
     if lesson.numbers:
         yield from _of_scene(page, lesson)
     else:
@@ -35,6 +39,8 @@ def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
 
 def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
     """Return the formula of a number, in symbols that have a value in the scene, and the value of the number.
+
+    ``scene`` is the name of a shipped scene or the path of a scene file. The value is rounded.
 
     Raises
     ------
@@ -99,7 +105,10 @@ def _bare(latex: str) -> str:
 
 
 def _quantity(value: Expr, unit: str) -> str:
-    """Return a number with its unit as LaTeX, rounded to :data:`DIGITS` digits."""
+    r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to :data:`DIGITS` digits.
+
+    A number smaller in size than :data:`NOTHING` is a rounding error and is printed as 0.
+    """
     number = float(value)
     text = "0" if abs(number) < NOTHING else f"{number:.{DIGITS}g}"
     if "e" in text:
@@ -109,7 +118,7 @@ def _quantity(value: Expr, unit: str) -> str:
 
 
 def _of_exercise(lesson: Lesson) -> Iterator[Passage]:
-    """Yield the paragraphs of an exercise with its solution; every line of the solution is proven."""
+    """Yield the paragraphs of the exercise ``lesson.worked`` with its solution; every line of it is proven."""
     problem = exercise(lesson.worked)[0]
     quantities = ", ".join(f"${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in problem.data)
     asked = " ".join(question.prompt for question in problem.questions if question.kind == "number")

@@ -17,6 +17,8 @@ __all__ = ["taught"]
 def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """Return a page with its lesson: question, figures, prerequisites in front; numbers, mistake, links at the end.
 
+    ``page`` is the page of a derivation of the catalogue; its lesson is looked up by its name.
+
     Examples
     --------
     >>> [item.title for item in taught(derivation("poinsot")).closing if isinstance(item, Section)]
@@ -42,7 +44,7 @@ def _before(lesson: Lesson) -> str:
 
 
 def _steps_of(page: Page, sections: Sequence[str]) -> int:
-    """Return the number of steps in some sections of a page.
+    """Return how many steps the sections with the titles ``sections`` of a page have together.
 
     Raises
     ------

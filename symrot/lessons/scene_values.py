@@ -69,7 +69,11 @@ def _exact(value: Fraction) -> Rational:
 
 
 def _of_torque(torque: Torque) -> dict[Expr, Expr]:
-    """Return a map from symbols of derivations to the constants of a torque."""
+    """Return the constants of a torque, such as the components of a rotor's angular momentum.
+
+    The keys are the symbols that derivations use for these constants. The map is empty for a torque without such
+    symbols.
+    """
     vectors = {
         ("constant_body", "torque"): symbols.torque_b,
         ("rotor", "angular_momentum"): symbols.rotor,

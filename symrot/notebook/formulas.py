@@ -18,7 +18,7 @@ LANGUAGES = {"#include": "c", "import": "python", "export": "javascript"}
 
 
 def derivation(page: Page) -> str:
-    """Return the page of a derivation, with its figures, as Markdown."""
+    """Return a derivation, or its page, with the page's figures as Markdown with LaTeX formulas."""
     whole = illustrated(page) if isinstance(page, Derivation) else page
     text = inline(markdown(whole))
     for item in (*whole.opening, *whole.items):
@@ -47,7 +47,10 @@ def _lengths(body: Solid) -> list[tuple[str, object]]:
 
 
 def dossier(singularities: SingularityDossier) -> str:
-    """Return Markdown about an Euler sequence: its rate matrix, the determinant, and the axis lost at gimbal lock."""
+    """Return Markdown about an Euler sequence: the matrix B, its determinant, and the axis lost at gimbal lock.
+
+    B maps the rates of the Euler angles to the angular velocity in body components.
+    """
     parts = [
         f"**Singularities of {singularities.sequence}**",
         equation(r"\omega_b = B\,\dot q, \quad B", singularities.jacobian_b),
@@ -64,6 +67,9 @@ def dossier(singularities: SingularityDossier) -> str:
 
 
 def kernel(emitted: Emitted) -> str:
-    """Return the text of an emitted kernel as a Markdown block of code."""
+    """Return the text of an emitted kernel as a block of code in Markdown.
+
+    A kernel is a function that symrot prints in a programming language from derived formulas.
+    """
     language = next((name for word, name in LANGUAGES.items() if f"\n{word} " in emitted.source), "")
     return f"```{language}\n{emitted.source}```"

@@ -48,7 +48,10 @@ def _torque(torque: Torque) -> str:
 
 
 def plan(one: Plan) -> str:
-    """Return an HTML table of a plan: which quantities are computed, which are skipped, and by which rule."""
+    """Return an HTML table of the plan of a scene: which quantities are computed, which are skipped, and why.
+
+    For each quantity the table names the rule, such as a conserved quantity, and the derivation that proves it.
+    """
     report = explain.facts(one)
     rows = [
         (row["item"], "skipped" if row["skipped"] else "kept", row["why"], row["derivation"])
@@ -61,12 +64,15 @@ def plan(one: Plan) -> str:
 
 
 def propagator(one: Propagator) -> str:
-    """Return an HTML table with the scene of a propagator and the method that computes its motion."""
+    """Return HTML about a propagator: its method with the reason for the choice, and the data of its scene."""
     return heading(f"Propagator: {one.method}", one.reason) + scene(one.scene)
 
 
 def ensemble(one: Ensemble) -> str:
-    """Return an HTML table: the number of motions, and percentiles of the angular velocity at the last time."""
+    """Return an HTML table about the motions of an ensemble: number, samples, method, percentiles at the last time.
+
+    The percentiles are those of the angular velocity's components. Motions that ended early are not among them.
+    """
     import numpy as np
 
     last = one.omega[:, -1, :]

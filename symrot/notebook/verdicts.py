@@ -28,6 +28,6 @@ def verdict(one: Verdict) -> str:
 
 
 def identification(one: Identification) -> str:
-    """Return an HTML table with the name of a recognised formula, and the derivation that proves it."""
+    """Return an HTML table with the name of a formula that symrot recognised, and the derivation that contains it."""
     rows = [("formula", str(one)), ("derived in", one.source)]
     return table(rows)

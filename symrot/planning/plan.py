@@ -76,18 +76,29 @@ class Plan:
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """The constants of body and torques, which do not depend on the initial state, with their values, by name."""
+        """The constants of body and torques, which do not depend on the initial state: their exact values, by name.
+
+        An example is ``{"A": Fraction(1), "C": Fraction(1, 2)}``; see
+        :func:`~symrot.planning.general_structure.constants_of`.
+        """
         return constants_of(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The constants that belong to the initial state, such as a constant omega_3, with their values, by name."""
+        """The constants that belong to the initial state, such as a constant omega_3, with their exact values, by name.
+
+        An example is ``{"omega_3": Fraction(3)}`` for a symmetric top with constant spin. The dictionary is empty if
+        the equations contain no number of the initial state.
+        """
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """For each constant of the initial state: (name, 0 for omega or 1 for the quaternion, index of component)."""
+        """For each constant of the initial state: (name, 0 for omega or 1 for the quaternion, index of component).
+
+        An example is ``(("omega_3", 0, 2),)``: the constant omega_3 is component 2 of the initial angular velocity.
+        """
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -105,7 +116,12 @@ class Plan:
 
     @cached_property
     def states(self) -> tuple[str, ...]:
-        """The names of the states, in the order that the kernel expects: angular velocity, then attitude."""
+        """The names of the states, in the order that the kernel expects: angular velocity, then attitude.
+
+        An example is ``("omega_1", "omega_2", "q0", "q1", "q2", "q3")`` for a constant omega_3. If the body rotates
+        about one axis only, the attitude is the single angle ``theta``. The tuple is empty if nothing has to be
+        integrated.
+        """
         structure, axis = self.structure, self.structure.planar
         names = [f"omega_{i + 1}" for i in structure.moving]
         if structure.attitude:
@@ -117,7 +133,7 @@ class Plan:
 
     @cached_property
     def initial_state(self) -> tuple[float, ...]:
-        """The initial values of :attr:`states`, in the same order."""
+        """The initial values of :attr:`states`, in the same order; the angle theta starts at 0."""
         start = self.scene.initial
         values = (*start.omega_b, *start.quaternion, 0)
         ratios = [values[place].as_integer_ratio() for place in self._places]
@@ -125,13 +141,13 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index of each state in :data:`STATES`."""
+        """The index in :data:`STATES` (all possible states: omega, quaternion, theta) of each state of the plan."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
         """Return the plan of the same scene and structure for another initial state; the rules are not applied again.
 
-        ``initial`` must have the same :func:`structure_key` as the initial state of this plan.
+        ``initial`` must have the same :func:`structure_key` as the initial state of this plan; this is not checked.
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
@@ -198,8 +214,9 @@ def make_plan(
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
     """Return a key of an initial state; if two states of a scene have equal keys, their plans differ only in numbers.
 
-    The key says which components of omega are zero. If the body may rotate about a single axis, it also says which
-    components of the quaternion are 0, 1 or -1, and which body components of torques fixed in space are zero.
+    The key says which components of omega are not zero. If at most one is, so that the body may rotate about a single
+    axis, it also says which components of the quaternion are 0, 1 or -1, and which body components of torques fixed in
+    space are zero. A propagator keeps one prepared motion for each key.
     """
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:

@@ -1,7 +1,9 @@
 """The rules by which a plan simplifies the structure of a scene, each with its reason.
 
-Each rule examines exact numbers, simplifies the structure or leaves it unchanged, and names the derivation that
-justifies the change. :mod:`symrot.planning.plan` applies the rules.
+A structure is the form of the equations of motion: which constants of body and torques are zero, one, equal or free
+(have any other value), and which states are computed. Each rule takes the scene and the structure so far, examines the
+exact numbers of the scene, simplifies the structure or leaves it unchanged, and names the derivation (a page that
+symrot derives and proves) that justifies the change. :mod:`symrot.planning.plan` applies the rules.
 """
 
 from collections.abc import Callable
@@ -73,7 +75,11 @@ class RuleOutcome(NamedTuple):
 
 
 def pattern(value: Fraction, unit: bool) -> Pattern:
-    """Return the pattern of a number: zero, one or minus one (only if ``unit`` is true), otherwise free."""
+    """Return how the equations may treat a number: as zero, as one or minus one (only if ``unit`` is true), or as free.
+
+    Free means that the equations contain the number as a parameter. ``unit`` is true for components of unit vectors and
+    quaternions, where the values 1 and -1 are common.
+    """
     top, bottom = value.as_integer_ratio()
     if not top:
         return ZERO
@@ -135,7 +141,12 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or no sentence."""
+    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or an empty list.
+
+    An example is ``["the formulas give no torque about body axes 1 and 2"]``; it becomes part of the reason of a rule.
+    The list is empty if no formula is zero. ``scene_torque`` is the torque as the scene gives it, ``torque`` its
+    structure.
+    """
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
@@ -144,7 +155,7 @@ def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
 
 
 def _is_zero(formula: str) -> bool:
-    """Return whether a formula is the number zero."""
+    """Return whether a formula, given as text, is zero, such as ``"0"`` or ``"1 - 1"``; False if it contains names."""
     node = expression.parse(formula, switching=True)
     if expression.names(node):
         return False
@@ -174,12 +185,19 @@ def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
-    """Return whether a vector is parallel to a body axis: the components along the other two axes are zero."""
+    """Return whether a vector is parallel to body axis ``axis`` (0 to 2): its other two components are zero.
+
+    The vector may be zero. Its components are given as patterns: zero, or free for an unknown value.
+    """
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
-    """Return whether a torque is always parallel to a body axis while the body rotates only about this axis."""
+    """Return whether a torque is always parallel to body axis ``axis`` while the body rotates only about this axis.
+
+    If it is for all torques, the motion is a rotation about this axis, with one angle as attitude. ``torque`` is the
+    structure of the torque, ``scene_torque`` the same torque with its numbers. The answer is False for formulas.
+    """
     if isinstance(torque, FormulaTorque):
         return False
     if torque.kind == "constant_body":
@@ -195,7 +213,10 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
 
 
 def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
-    """Return the body components, at the initial attitude, of a vector that is given in space components."""
+    """Return the body components, at the initial attitude, of a vector that is given in space components.
+
+    They are exact. If the quaternion is not exactly of norm 1, they are multiplied by the square of its norm.
+    """
     q0, *q = initial.quaternion
     twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
     turned = (
@@ -216,7 +237,8 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
 def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
     """Return, for each body component of a vector, whether it is zero (to 2^-200) at the initial attitude.
 
-    The vector is given in space components.
+    The vector is given in space components, ``vector_s``. A component counts as zero if it is at most 2^-200 times the
+    largest one: the quaternion of most attitudes is irrational and therefore rounded.
     """
     if _all_large(vector_s, initial):
         return False, False, False
@@ -227,7 +249,8 @@ def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
     """Return whether a computation in doubles proves that no body component of a vector is zero at the start.
 
-    The computation takes a tenth of the time of exact arithmetic. False means that nothing was proven.
+    The vector is given in space components, ``vector_s``. The computation takes a tenth of the time of exact
+    arithmetic. If it returns False, a component may be zero or not: exact arithmetic has to decide.
     """
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
@@ -289,9 +312,10 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return, for each component of omega_b, its pattern (zero or free) if it is constant, otherwise None.
+    """Return, for each component of omega_b, how it enters the equations: zero or free if constant, None if it changes.
 
-    ``axes`` holds the indices of the components that are constant.
+    ``axes`` holds the indices (0 to 2) of the components that are constant. Such a component is not a state; its
+    pattern is zero if its initial value is zero, and free (a parameter) otherwise.
     """
     first, second, third = (
         pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
@@ -300,7 +324,10 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque never has a component along the body's symmetry axis, which has the index ``axis``."""
+    """Return whether a torque never has a component along the body's symmetry axis, the body axis ``axis`` (0 to 2).
+
+    The spin about this axis is then constant. False means that the torque may have such a component.
+    """
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
     if torque.kind == "constant_body":

@@ -1,5 +1,6 @@
 """Kernels of plans as saved data: a kernel consists of the equations of a plan as programs, and of their C text.
 
+A program is a list of arithmetic operations without branches, which can be printed as C or as Python.
 :mod:`symrot.codegen.scene_kernels` derives the kernels, the cache stores them as JSON, and the propagator assigns
 values to their parameters. This module does not use SymPy.
 """
@@ -47,7 +48,7 @@ SavedParameters = list[tuple[str, list[Any]]]  # name, formula as nested lists
 
 
 class KernelRecord(TypedDict):
-    """The data of a :class:`SceneKernel`, which the cache stores as JSON."""
+    """The data of a :class:`SceneKernel`, which the cache stores as JSON; each key is a property of that class."""
 
     rates: ProgramRecord
     rate_parameters: SavedParameters
@@ -77,7 +78,10 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text."""
+        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text.
+
+        Each argument becomes the property of the same name; ``source`` is the C text of ``rates``.
+        """
         return cls(
             {
                 "rates": rates.to_json(),
@@ -90,7 +94,10 @@ class SceneKernel:
         )
 
     def without_invariants(self, reason: str) -> "SceneKernel":
-        """Return the kernel with all candidates for conserved quantities marked as not conserved, with a reason."""
+        """Return the kernel with all candidates for conserved quantities marked as not conserved.
+
+        ``reason`` says why, for example that a torque without a formula acts, about which nothing can be proven.
+        """
         lost = [(name, unit, output, False, reason) for name, unit, output, *_ in self.record["conserved"]]
         return SceneKernel({**self.record, "conserved": lost})
 
@@ -101,7 +108,10 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates, as pairs (name, formula in terms of the constants of the scene)."""
+        """The parameters of the rates, as pairs (name, formula in terms of the constants of the scene).
+
+        An example is the pair of ``"p0"`` and the formula ``(B - C)/A``, in the order of the C array ``p``.
+        """
         return _loaded(self.record["rate_parameters"])
 
     @cached_property
@@ -111,12 +121,15 @@ class SceneKernel:
 
     @cached_property
     def quantity_parameters(self) -> Parameters:
-        """The parameters of the quantities, as pairs (name, formula in terms of the constants of the scene)."""
+        """The parameters of the quantities, as pairs (name, formula in terms of the constants of the scene).
+
+        The order is that of the parameters of the program :attr:`quantities`.
+        """
         return _loaded(self.record["quantity_parameters"])
 
     @cached_property
     def conserved(self) -> tuple[Conserved, ...]:
-        """The candidates for conserved quantities; those that are conserved come first."""
+        """The candidates for conserved quantities, such as the energy; those that are conserved come first."""
         return tuple(Conserved(*item) for item in self.record["conserved"])
 
     @property
@@ -134,6 +147,10 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of the parameters of a kernel, computed exactly from a scene's constants and rounded once."""
+    """Return the values of the parameters of a kernel, computed exactly from a scene's constants and rounded once.
+
+    ``parameters`` are pairs (name, formula), and ``constants`` the exact values of the names in the formulas: with A =
+    1, B = 3 and C = 2 the formula ``(B - C)/A`` gives 1.0.
+    """
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

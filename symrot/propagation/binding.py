@@ -1,9 +1,9 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
-A kernel is the generated code that computes the rates (time derivatives) of the states, or the output quantities. Most
-of its parameters depend on the scene alone: masses, moments of inertia, torques. They are evaluated once. Only
-parameters whose formulas contain a number of the initial state, such as a constant spin, are evaluated again for
-another initial state.
+A kernel is the generated code that computes the rates (time derivatives) of the states, or the output quantities. Its
+parameters are formulas in the constants of a scene, such as ``(B - C)/A``. Most of them depend on the scene alone:
+masses, moments of inertia, torques. They are evaluated once. Only parameters whose formulas contain a number of the
+initial state, such as a constant spin, are evaluated again for another initial state.
 """
 
 from collections.abc import Callable, Mapping
@@ -28,7 +28,7 @@ def one_double(top: int, bottom: int) -> tuple[float, ...]:
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
     """Return two doubles whose sum approximates the ratio top/bottom to 31 digits, as :class:`Binding` expects them.
 
-    They are the double nearest to the ratio, and the rounded remainder.
+    They are the double nearest to the ratio, and the rounded remainder: about 0.333 and 1.85e-17 for the ratio 1/3.
     """
     return quotient(top, bottom)
 
@@ -74,9 +74,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for a plan, which may have another initial state than the first plan.
+        """Return the parameter values for a plan of the first plan's structure, with the same or another initial state.
 
-        Each value is computed exactly and rounded once.
+        Each value is computed exactly and rounded once. The list has one or two doubles per parameter, as ``rounded``
+        returns.
         """
         numbers = self._numbers.copy()
         if self._moving:
@@ -90,13 +91,17 @@ class _Moving:
     """A formula that is evaluated exactly for each initial state, since it contains numbers of the initial state.
 
     A monomial in one name, such as ``3*omega_1**2``, is evaluated with integers, which is faster than with Fractions.
+    ``formula`` is a tree of operations in which all other constants have been replaced by their values.
     """
 
     def __init__(self, formula: Node) -> None:
         self._formula, self._monomial = formula, _monomial(formula)
 
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
-        """Return the value of the formula as a pair of integers: numerator and positive denominator."""
+        """Return the value of the formula as a pair of integers: numerator and positive denominator.
+
+        ``constants`` maps the names of the numbers of the initial state to their exact values.
+        """
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
         top, bottom, name, power = self._monomial
@@ -105,7 +110,10 @@ class _Moving:
 
 
 def _monomial(node: Node) -> tuple[int, int, str, int] | None:
-    """Return a monomial in one name as (numerator, denominator, name, power >= 1), or None for any other formula."""
+    """Return a monomial in one name as (numerator, denominator, name, power >= 1), or None for any other formula.
+
+    An example is ``(3, 2, "omega_1", 2)`` for the formula ``3*omega_1**2/2``.
+    """
     if node[0] == "symbol":
         return 1, 1, node[1], 1
     if node[0] == "neg" and (inner := _monomial(node[1])):
@@ -136,7 +144,10 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Replace each subexpression of a formula that contains only numbers and ``known`` constants by its value."""
+    """Return a formula in which subexpressions of numbers and names in ``known`` alone are replaced by their values.
+
+    With ``known`` = {"A": 2} the formula ``(A + 1)*omega_1`` becomes ``3*omega_1``.
+    """
     if names(node) <= known.keys():
         return ("number", value_of(node, known))
     if node[0] == "call":

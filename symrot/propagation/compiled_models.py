@@ -67,7 +67,11 @@ def _version() -> str:
 
 
 def kernel_key(plan: Plan) -> str:
-    """Return the key under which the cache stores the kernel of a plan."""
+    """Return the key under which the cache stores the kernel of a plan.
+
+    It is the text of the structure of the plan and of the version of symrot's files: equal for scenes that differ only
+    in numbers.
+    """
     return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
 
 
@@ -79,8 +83,9 @@ def _structure_text(structure: Structure) -> str:
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or newly derived.
 
-    As soon as the rates are derived, ``on_rates`` is called with them and their C text; for a cached kernel it is not
-    called.
+    As soon as the rates (time derivatives of the states) are derived, ``on_rates`` is called with their program and
+    their C text, so that a compiler can work on them while the conserved quantities are derived. For a cached kernel it
+    is not called.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
@@ -96,7 +101,7 @@ missing_compiler = library.missing
 
 
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
-    """Return the kernel of a plan and the compiled library that contains the kernel and its stepper.
+    """Return the kernel of a plan, and the path of the compiled library of the kernel and its stepper, DOP853.
 
     Raises
     ------
@@ -124,7 +129,10 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the compiled library that integrates the motion of a plan by DOP853, Dormand-Prince 8(5,3)."""
+    """Return the path of the compiled library that integrates the motion of a plan by DOP853, Dormand-Prince 8(5,3).
+
+    The library is compiled if the cache does not have it. ``kernel`` is the kernel of the plan.
+    """
     return library.build(library_source(plan, kernel), "motion")
 
 
@@ -156,7 +164,8 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
     """Return the blocks of states (omega, attitude) whose errors are measured separately, as edges and scales.
 
     Edges: block k consists of the states from edge k up to edge k + 1. Scales: the error of a block is divided by its
-    scale or, if the scale is 0, by the norm of the states in the block.
+    scale or, if the scale is 0, by the norm of the states in the block. For the states omega_1..3 and q0..q3 the result
+    is ``([0, 3, 7], [0.0, 1.0])``; a block without states is left out.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -176,22 +185,29 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque of the plan is given by formulas; a long step may miss a short pulse in such a torque."""
+    """Return whether a torque of the plan is given by formulas.
+
+    If so, the steps need limits, because a long step may miss a short pulse in such a torque.
+    """
     return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
     """Return whether a torque's formulas may make a motion from rest grow as the third or a higher power of time.
 
-    The first Taylor coefficients of this motion are zero, so that they do not show how large it becomes. An ensemble
-    therefore integrates such motions one by one, since only then each step can be checked.
+    The criterion is a formula of degree 3 or more in time and states, such as ``t**3``. The first Taylor coefficients
+    of this motion are zero, so that they do not show how large it becomes. An ensemble therefore integrates such
+    motions one by one, since only then each step can be checked.
     """
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula as a polynomial in time and states; a function or quotient counts as degree 1."""
+    """Return the degree of a formula as a polynomial in time and states; a function or quotient counts as degree 1.
+
+    An example is 3 for ``a*t**2*omega_1``, and 1 for ``sin(t**3)``. A formula of constants alone has degree 0.
+    """
     if node[0] == "symbol":
         return int(node[1] in CHANGING)
     degrees = [_degree(child) for child in children(node)]
@@ -205,8 +221,9 @@ def _degree(node: Node) -> int:
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
     """Return a function from the parameters of the rates to bounds that limit SciPy's steps; None without a limit.
 
-    The bounds say how far the torque formulas can deviate from their values at the start of a step. There is no limit
-    if no formula can have a pulse that a step misses, or if the rates have no Taylor series.
+    The bounds (:class:`symrot.propagation.enclosures.step_limit.Deviations`) say how far the torque formulas can
+    deviate from their values at the start of a step. The result is None if no torque has formulas, if no formula can
+    have a pulse that a step misses, or if the rates have no Taylor series.
     """
     if not has_formulas(plan):
         return None
@@ -224,7 +241,8 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
     """Return C code that bounds the rates of a plan on discs of the complex plane, from the cache or newly generated.
 
-    The bounds limit the steps of DOP853.
+    The bounds limit the steps of DOP853. ``rates`` returns the program of the rates; it is called only if the cache
+    does not have the code. ``edges`` are those of :func:`error_blocks`.
     """
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)

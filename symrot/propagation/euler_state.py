@@ -1,9 +1,9 @@
 """Euler angles as state variables, for teaching: their singularity, and a change of Euler sequence that avoids it.
 
-The states are omega_b and the three angles q of an Euler sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at
-gimbal lock: near it the angles change ever faster and steps shrink; at gimbal lock the motion cannot be followed. With
-switching, the states change well before gimbal lock to the angles of another sequence, which is regular there
-(:func:`partner`).
+The states are omega_b and the three angles q of an Euler sequence such as ``"ZXZ"``, with ``dq/dt = B(q)^-1 omega_b``.
+The rate matrix B is singular at gimbal lock: near it the angles change ever faster and steps shrink; at gimbal lock the
+motion cannot be followed. With switching, the states change well before gimbal lock to the angles of another sequence,
+which is regular there (:func:`partner`).
 
 The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
 other trajectory of the scene.
@@ -53,9 +53,10 @@ NAMES = ("phi", "theta", "psi")
 def partner(sequence: str) -> str:
     """Return the Euler sequence to use near gimbal lock of a given sequence; only its third axis differs.
 
-    Each sequence is singular where a certain entry of the attitude matrix is 1 or -1. The entries of the two sequences
-    lie in the same row (extrinsic: column), so that their squares add up to at most 1. Where one sequence is singular,
-    its partner therefore has ``|det B| = 1``; everywhere, at least one of the two has ``|det B| >= sqrt(1/2)``.
+    The partner of ``"ZXZ"`` is ``"ZXY"``, and the reverse. Each sequence is singular where a certain entry of the
+    attitude matrix is 1 or -1. The entries of the two sequences lie in the same row (extrinsic: column), so that their
+    squares add up to at most 1. Where one sequence is singular, its partner therefore has ``|det B| = 1``; everywhere,
+    at least one of the two has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -65,7 +66,7 @@ def partner(sequence: str) -> str:
 def regularity(sequence: str, angles: ArrayLike) -> Floats:
     """Return ``|det B|``, shape (...), of the rate matrix B of an Euler sequence: 0 at gimbal lock, at most 1.
 
-    ``angles``, rad, has shape (..., 3).
+    ``angles``, rad, has shape (..., 3). For ``"ZXZ"`` the result is ``|sin(theta)|``, where theta is the second angle.
     """
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
@@ -86,7 +87,11 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 
 
 class _Kernel(NamedTuple):
-    """The compiled equations of motion in the angles of one Euler sequence, with a stepper, and their parameters."""
+    """The compiled equations of motion in the angles of one Euler sequence: library with stepper, parameters, clock.
+
+    ``clock`` returns the same equations with the time counted from any epoch; it is None if they do not contain the
+    time.
+    """
 
     library: Path
     parameters: list[float]
@@ -108,7 +113,9 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    All times are scene times, not times since the start, so that they stay the same when the Euler sequence changes.
+    ``sequence`` is the Euler sequence at the start. ``switching`` says whether the states change to the angles of its
+    partner near gimbal lock. All times are scene times, not times since the start, so that they stay the same when the
+    Euler sequence changes.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -183,9 +190,9 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Compute the motion up to ``end``, s, and yield its parts, each of which uses one Euler sequence.
+        """Compute the motion from its start to ``end``, s, and yield its parts, each of which uses one Euler sequence.
 
-        The costs of the parts are added up.
+        The costs of the parts are added up, with the number of changes of the sequence.
         """
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
@@ -206,7 +213,8 @@ class EulerMotion(Motion):
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
         """Yield groups of steps as (first time, last time, recorded steps) until ``end`` or near gimbal lock.
 
-        Near gimbal lock, the caller continues with another Euler sequence.
+        ``integration`` steps the angles of ``sequence``. Near gimbal lock the iterator ends, and the caller continues
+        with another Euler sequence.
         """
         count, broken = self._moving, None
         try:
@@ -248,7 +256,10 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, 7), and the cost of the motion."""
+        """Return omega and quaternion at the times, shape (n, 7), and the cost of the motion.
+
+        ``in_order`` is not used: the times are sorted in any case.
+        """
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
@@ -282,7 +293,11 @@ class EulerMotion(Motion):
 
 
 def _derived(structure: Structure) -> KernelRecord:
-    """Return the equations of motion in Euler angles, derived from a structure, in the form that the cache stores."""
+    """Return the equations of motion in Euler angles, derived from a structure, in the form that the cache stores.
+
+    The structure is the form of the equations: which constants are zero, equal or free. Its field ``sequence`` names
+    the Euler sequence.
+    """
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
@@ -309,7 +324,8 @@ class EulerPropagator(Propagator):
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
         """Return the motion at the times t, as a call of :class:`symrot.propagation.propagator.Propagator` does.
 
-        Events are not supported: they raise InputError.
+        ``state`` holds its arguments for another initial state, such as ``omega``. Events are not supported: they raise
+        InputError.
         """
         if events is not None:
             raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")

@@ -80,7 +80,7 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return a pointer to the torque as a C function; for a table, the function is part of ``library``."""
+        """Return a pointer to the torque as a C function; for a table, this function is in the compiled ``library``."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
@@ -225,8 +225,8 @@ class _Table(TorqueSource):
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
     """Return the splines of a table as one array for the C function ``symrot_table_torque``, and its knots, s.
 
-    A separate spline is fitted between any two consecutive switching times. Knots are the times at which a derivative
-    of a spline jumps.
+    ``t`` and ``values`` are the times and samples, shapes (n,) and (n, 3). A separate spline is fitted between any two
+    consecutive times of ``switching``. Knots are the times at which a derivative of a spline jumps.
     """
     from scipy.interpolate import CubicSpline
 
@@ -252,7 +252,10 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Raise InputError if a spline far exceeds the largest sample, which happens for very unevenly spaced samples."""
+    """Raise InputError if a spline far exceeds the largest sample, which happens for very unevenly spaced samples.
+
+    The limit is 100 times ``largest``, the largest sample of the table.
+    """
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
@@ -285,7 +288,10 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
 
 
 def _bits(address: int) -> float:
-    """Return the double with the same 64 bits as an address, so that a kernel parameter can hold the address."""
+    """Return the double with the same 64 bits as an address, so that a kernel parameter can hold the address.
+
+    All parameters of kernels are doubles.
+    """
     return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
 
 
@@ -328,7 +334,9 @@ def external_setup(
 ) -> ExternalSetup:
     """Return the data that all motions under a torque without a formula share.
 
-    Kernel, torque and stepper are compiled into one library.
+    Kernel, torque and stepper are compiled into one library. ``in_space`` says whether the torque has space components
+    instead of body components, ``switching`` holds the times, s, at which it jumps, and ``max_step`` is the longest
+    step, s.
     """
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
@@ -374,7 +382,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
         """Return the motion from another initial state; nothing is derived or compiled again.
 
-        The equations of motion must have the same form as for the first initial state.
+        The initial state may be any, since no state is left out under such a torque.
         """
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
@@ -388,7 +396,11 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Check the times, then return the result of ``run()``; an exception of the torque function is raised again."""
+        """Check that the torque is defined from ``low`` to ``high``, s, then return the result of ``run()``.
+
+        If the torque function raised an exception during ``run()``, this exception is raised instead of the stepper's
+        error.
+        """
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:

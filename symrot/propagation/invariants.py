@@ -17,7 +17,10 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return C code that computes the conserved quantities, whose values the Taylor stepper keeps constant."""
+    """Return C code that computes the conserved quantities, whose values the Taylor stepper keeps constant.
+
+    ``states`` are the names of the states, in the order of the C array that the code reads.
+    """
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
     outputs = [item.output for item in kernel.conserved if item.holds]
@@ -25,7 +28,10 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and the rounded rest."""
+    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and the rounded rest.
+
+    The order is that of the kernel's quantities: for two parameters the list is [first, its rest, second, its rest].
+    """
     values = {"pi": number.PI, **plan.constants}
     pairs: list[float] = []
     for _, node in kernel.quantity_parameters:

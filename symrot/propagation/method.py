@@ -22,7 +22,10 @@ METHODS = {
 
 
 class Choice(NamedTuple):
-    """The chosen method, the reason for the choice, and the closed form of the motion if the method is ``exact``."""
+    """The chosen method, such as ``"taylor"``, the reason for the choice as text, and the closed form of the motion.
+
+    ``form`` is None unless the method is ``exact``.
+    """
 
     method: str
     reason: str

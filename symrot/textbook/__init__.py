@@ -34,7 +34,11 @@ LINE_KINDS = {
 
 
 class Document(NamedTuple):
-    """A document: name, title, kind, the kinds of characters that its text lost, and its claims (file and data)."""
+    """A document whose claims are checked: its name, title, kind, and its claims (in a TOML file and as parsed data).
+
+    Its text has been extracted from print. The kinds of characters that the extraction lost, such as primes, are
+    listed.
+    """
 
     name: str
     title: str
@@ -68,7 +72,10 @@ class Erratum(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """A condition that a document does not state: the claim that needs it, the condition as formulas, and in words."""
+    """A condition that a document does not state.
+
+    It consists of the label of the claim that needs it, the condition as formulas, and the condition in words.
+    """
 
     claim: str
     hypotheses: tuple[str, ...]
@@ -104,7 +111,7 @@ def document(name: str) -> Document:
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors in all documents, in the order of the documents."""
+    """Return the errors in all documents, in the order of the documents; each is an :class:`Erratum`."""
     return tuple(
         Erratum(entry["title"], entry["why"], tuple(map(_printed_formula, entry["formula"])))
         for entry in _content("errata")["error"]

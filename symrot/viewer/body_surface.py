@@ -77,7 +77,10 @@ def patches(body: Body) -> list[Patch]:
 
 
 def how_drawn(body: Body) -> str:
-    """Return the sentence for the page that the body is drawn as a box; empty if the shape of the body is known."""
+    """Return the sentence for a page that draws the body as a box: the box has the body's moments of inertia.
+
+    The text is empty if the shape of the body is known.
+    """
     if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
@@ -132,9 +135,10 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield each face of a shape: the coordinate that is constant on it, with its value, and the other coordinates.
+    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the other coordinates.
 
-    An angle from 0 to 2 pi gives no faces, since its two ends are the same points inside the body.
+    A shape is the image of a box of coordinates, such as radius, angle and height. An angle from 0 to 2 pi gives no
+    faces, since its two ends are the same points inside the body.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:
@@ -149,7 +153,11 @@ def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...
 
 
 def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mapping[str, list[float]]) -> bool:
-    """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0."""
+    """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0.
+
+    ``position`` are the formulas of x, y, z in the shape's coordinates and lengths, ``values`` the coordinate that is
+    constant on the face, and the lengths; ``grids`` the values of the other coordinates.
+    """
     inside = {name: grid[0] + INSIDE * (grid[-1] - grid[0]) for name, grid in grids.items()}
 
     def point(**moved: float) -> list[float]:
@@ -161,7 +169,7 @@ def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mappi
 
 
 def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
-    """Return the values of a coordinate for the grid of a surface: both ends, and values between them for an angle."""
+    """Return the values of a coordinate at which a surface is computed: both ends; for an angle also values between."""
     low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
     count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1
     return [low + (high - low) * k / count for k in range(count + 1)]
@@ -174,7 +182,10 @@ def _value(text: str, values: Mapping[str, float]) -> float:
 
 
 def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
-    """Return principal moments about the centre of mass, the mass and the centre; None if they are not known."""
+    """Return the principal moments about the centre of mass, the mass and the centre of a body.
+
+    The result is None if the scene does not give the mass and the centre, so that the moments cannot be moved there.
+    """
     if body.mass is None or body.center_of_mass is None:
         return None
     try:

@@ -180,7 +180,10 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return a patch that is a curve as one list of points; return separate points as lists of one point each."""
+    """Return the lines of a patch that is not a surface: a curve as one list of points.
+
+    Separate points are lists of one point each.
+    """
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 

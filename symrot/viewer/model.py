@@ -132,7 +132,10 @@ def with_attitude(scene: Scene) -> Scene:
 
 
 def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
-    """Return the reason why a page plays a motion computed beforehand; empty if the page computes the motion."""
+    """Return why a page plays a motion that symrot computed beforehand; empty if the page computes the motion.
+
+    ``trajectory`` is the motion to play, if its torque has no formula.
+    """
     if trajectory is not None:
         return "a torque without a formula acts, so symrot computed this motion beforehand"
     if scene.table is not None:
@@ -145,9 +148,10 @@ def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
 
 
 def _free_structure(scene: Scene) -> Any:
-    """Return the structure of a scene in which every constant may change.
+    """Return the structure of a scene (which constants are zero or equal) for a page on which all may change.
 
-    If the axes of the body are principal axes, the structure has no products of inertia.
+    Nothing is assumed zero or equal, with one exception: if the axes of the body are principal axes, the structure has
+    no products of inertia.
     """
     structure = general_structure(scene)
     if scene.body.principal.given_axes:
@@ -199,7 +203,7 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
 
 
 def _rest(value: Fraction) -> float:
-    """Return the rounding error of a number's nearest double: the page adds it to that double, for 32 digits in all."""
+    """Return a number minus its nearest double, as a double: the page adds both, which gives 32 digits in all."""
     return float(value - Fraction(float(value)))
 
 
@@ -220,10 +224,10 @@ def _packed(values: Floats) -> str:
 
 
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
-    """Return a motion as evenly spaced samples of omega and quaternion, close enough to be drawn.
+    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to be drawn.
 
-    If the motion has too many rotations for a page, only its first part is returned; the text ``played`` says so.
-    ``reason`` is the reason why the page does not compute the motion.
+    If the motion has too many rotations for a page, only its first part is returned; the text under the key ``played``
+    says so. ``reason`` is the reason why the page does not compute the motion, for the same text.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
@@ -267,7 +271,10 @@ def _tableau() -> dict[str, Any]:
 
 
 def _angle_kernels(sequence: str) -> dict[str, Program]:
-    """Return the kernels that convert between Euler angles and quaternions, by their names in the page."""
+    """Return two functions for the page, from quaternion to Euler angles and back, by the names that the page calls.
+
+    ``sequence`` is the sequence of the scene's Euler angles, such as ``ZXZ``.
+    """
     from symrot.codegen.library_kernels import kernel_program
 
     angles = f"euler_{'' if sequence.isupper() else 'extrinsic_'}{sequence.lower()}"
@@ -278,7 +285,10 @@ def _angle_kernels(sequence: str) -> dict[str, Program]:
 
 
 def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
-    """Return the JavaScript of all kernels of a page that computes the motion of a scene."""
+    """Return the JavaScript of all functions with which a page computes the motion of a scene.
+
+    They compute the rates of the state, the printed quantities, and from ``constants`` the parameters of both.
+    """
     programs = {
         "rates": kernel.rates,
         "quantities": kernel.quantities,
@@ -296,7 +306,10 @@ def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -
 
 
 def _script(programs: Mapping[str, Program], facts: Mapping[str, Any] = MappingProxyType({})) -> str:
-    """Return JavaScript that defines ``kernel``, an object with the functions of the programs and with other values."""
+    """Return JavaScript that defines the object ``kernel``, with one function for each of the ``programs``, by its key.
+
+    ``facts`` are further entries of the object, by name, such as the number of parameters.
+    """
     lines = js_functions(*programs.values())
     for program in programs.values():
         lines += [*js_function(program), ""]
@@ -310,7 +323,10 @@ def _size(program: Program, name: str) -> int:
 
 
 def _binding(name: str, parameters: Parameters, constants: Iterable[str]) -> Program:
-    """Return the program that computes a kernel's parameters from the array ``c`` of physical constants."""
+    """Return a program that computes a kernel's parameters, such as (C - B)/A, from the array ``c`` of constants.
+
+    ``name`` is the name of the JavaScript function; ``constants`` are the names of the array's entries, in order.
+    """
     components = (*((f"c_{constant}", "", "") for constant in constants), ("c_pi", "", ""))
     names = {constant: f"c_{constant}" for constant in (*constants, "pi")}
     results = tuple((f"p_{place}", "", "") for place, _ in enumerate(parameters))
@@ -350,7 +366,11 @@ def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
 
 
 def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
-    """Yield (name, field of its torque) for each torque constant that may change while the others stay the same."""
+    """Yield name and field for each constant of a torque that may change while the others stay the same.
+
+    A field describes one number of a torque in a scene file: its name, unit and meaning. The page has a slider for
+    each.
+    """
     for torque in plan.structure.torques:
         fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}
         for name, pattern in getattr(torque, "fields", ()):

@@ -93,7 +93,7 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
 def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
     """Return the scene of a page, and the trajectory that the page has to play, or None if it computes the motion.
 
-    A page has to play a trajectory if a torque without a formula acts.
+    A page has to play a trajectory if a torque without a formula (a Python function) acts.
     """
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))

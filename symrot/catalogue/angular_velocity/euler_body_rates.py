@@ -181,5 +181,5 @@ def _latex(expression: object) -> str:
 
 
 def _points(jacobian: EulerRateMatrix) -> str:
-    """Return, as LaTeX between dollar signs, the angles from 0 to 2 pi at which an Euler sequence is singular."""
+    r"""Return as LaTeX the second Euler angles, from 0 to 2 pi, at gimbal lock, such as ``$0, \pi, 2 \pi$``."""
     return f"${', '.join(_latex(point) for point in jacobian.singular_set.points())}$"

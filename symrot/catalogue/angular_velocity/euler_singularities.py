@@ -140,7 +140,10 @@ def _cells(sequence: str, point: LockedPoint) -> tuple[str, ...]:
 
 
 def _cosine(sequence: str) -> Expr:
-    """Return the cosine of the angle between the first and the last axis of rotation."""
+    """Return the cosine of the angle between the first and the last axis of the rotations of an Euler sequence.
+
+    It depends on the second angle alone; at gimbal lock it is 1 or -1.
+    """
     first, middle, last = factors(sequence)
     return (first.direction.T * middle.rotation * last.direction)[0]
 

@@ -55,7 +55,10 @@ def smallest_turn() -> Matrix:
 
 
 def turning_rate() -> Expr:
-    """Return the rate of rotation about the angular momentum, rad/s."""
+    """Return the rate of rotation about the angular momentum, rad/s.
+
+    The attitude of a free body is this rotation times :func:`smallest_turn`.
+    """
     return (2 * T + H * L3 / C) / (H + L3)
 
 

@@ -42,7 +42,10 @@ def derive() -> Derivation:
 
 
 def cubic(height: Expr) -> Expr:
-    """Return the square of the rate of cos(theta) of a heavy top: a cubic polynomial with three known zeros."""
+    """Return the square of d(cos theta)/dt of a heavy top, a cubic polynomial of ``height`` = cos(theta).
+
+    Its three zeros U1, U2, U3 are taken as known.
+    """
     return 2 * W * ARM / A * (height - U1) * (height - U2) * (height - U3)
 
 

@@ -154,7 +154,10 @@ def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
 
 
 def _integral(body: Solid, axes: Sequence[int]) -> Expr:
-    """Return the value of the integral of a product of coordinates x, y, z over a solid, in closed form."""
+    """Return the integral of a product of coordinates x, y, z over a solid, in closed form.
+
+    ``axes`` contains the numbers of the factors: (0, 0) for x^2, (0, 1) for x y, () for the volume.
+    """
     constant, stages = _stages(body, axes)
     return constant * stages[-1].value
 
@@ -162,7 +165,7 @@ def _integral(body: Solid, axes: Sequence[int]) -> Expr:
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
     """Return the antiderivatives of an integral as text for the reason of a step, the innermost first.
 
-    If they are long, return only the last antiderivative.
+    ``axes`` as in :func:`_integral`. If they are long, return only the last antiderivative.
     """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
@@ -175,7 +178,10 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each integration, the equation (words, left, right) for the antiderivative between its limits."""
+    """Return, for each integration, the equation (words, left, right) for the antiderivative between its limits.
+
+    The equations become lines on the page; ``axes`` as in :func:`_integral`.
+    """
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))

@@ -14,12 +14,15 @@ I = Symbol("i")  # noqa: E741
 
 
 def imaginary() -> Expr:
-    """Return the expression i^2 + 1 for the symbol i; proofs assume that it is zero."""
+    """Return i^2 + 1, where i is a plain symbol for the imaginary unit; proofs assume that this expression is zero."""
     return I**2 + 1
 
 
 def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
-    """Return a map from the symbols sn, cn, dn to their time derivatives, if their argument grows at ``speed``."""
+    """Return a map from the symbols sn, cn, dn to their time derivatives; their argument grows at ``speed``, 1/s.
+
+    ``parameter`` is the parameter (square of the modulus) of the elliptic functions.
+    """
     return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
 
 

@@ -22,7 +22,7 @@ TENSOR = Matrix(
 
 
 def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
-    """Return a map from each variable to its rate of change."""
+    """Return a map from each variable to its rate of change, for :func:`rate`; ``rates`` has the same order."""
     return dict(zip(variables, list(rates), strict=True))
 
 

@@ -33,8 +33,8 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 class Disc(NamedTuple):
     """The disc of all complex numbers within ``radius`` of a real ``centre``: it encloses the values of a formula.
 
-    If given, ``log_size`` is an upper bound of the logarithm of their absolute values. It is useful where the numbers
-    themselves overflow or underflow.
+    If given, ``log_size`` is an upper bound of the natural logarithm of their absolute values. It is useful where the
+    numbers themselves overflow or underflow.
     """
 
     centre: float
@@ -170,10 +170,11 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
     """Generate and compile a Python function that computes the bounds of an enclosure much faster than disc by disc.
 
-    Its arguments are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then
-    ``w``, the constant coefficients in the terms, and ``a``, their absolute values. The bounds are the same as disc by
-    disc, except where numbers overflow, because the function omits :attr:`Disc.log_size`. If a bound is infinite or
-    NaN, the caller has to evaluate disc by disc.
+    An enclosure is a set of terms with the rules by which they are evaluated over discs. The arguments of the function
+    are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then ``w``, the constant
+    coefficients in the terms, and ``a``, their absolute values. The bounds are the same as disc by disc, except where
+    numbers overflow, because the function omits :attr:`Disc.log_size`. If a bound is infinite or NaN, the caller has to
+    evaluate disc by disc.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -266,8 +267,8 @@ class Deviations:
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed disc by disc.
 
-        A :class:`Disc` also has the logarithm of the size of its numbers. Where the numbers themselves overflow, a
-        bound can still be finite.
+        The arguments are those of :meth:`__call__`. A :class:`Disc` also has the logarithm of the size of its numbers.
+        Where the numbers themselves overflow, a bound can still be finite.
         """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}
@@ -306,9 +307,10 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function that takes the parameters of the rates and returns their :class:`Deviations`.
+    """Return a function that takes the parameters of the rates, by name, and returns their :class:`Deviations`.
 
-    The Python code of the bounds is compiled only once for all parameters.
+    ``enclosure`` holds the terms of the rates that need bounds. The Python code of the bounds is compiled only once for
+    all parameters.
     """
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)

@@ -78,7 +78,10 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """One of the two parts of a motion, after or before its start: polynomials, and a function from times to states."""
+    """The part of a motion after or before its start, for the search for events.
+
+    It has polynomials (``pieces``), a function from times to states, and the errors that ended it early (``broken``).
+    """
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -166,9 +169,11 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Search one side of a motion for events, up to ``end``; return them, and the error that ended the search early.
+    """Search one side of a motion (the part after or before its start) for events; return them, and an error or None.
 
-    The error is None if the search reached ``end`` or a terminal event.
+    The side extends from ``start`` to ``end``, s. The error is the one that ended the search early; it is None if the
+    search reached ``end`` or a terminal event. ``path`` is the library of the events, ``p`` are its parameters, and
+    ``accuracy`` is the error of the states, relative to their sizes.
     """
     if end == start:
         return SearchResult([], None, []), None
@@ -187,7 +192,7 @@ def _searched(
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
     """Yield a warning for each event whose formula comes so close to zero that the error of the motion matters.
 
-    Each doubt is (index of the event, time of the extremum of its formula, s).
+    Each item of ``doubts`` is (index of the event, time, s, of an extremum of its formula so close to zero).
     """
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
@@ -218,9 +223,10 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the side of a motion from its start to ``end``, s, as polynomials and as a function from times to states.
+    """Return the part of a motion from its start to ``end``, s, as polynomials and as a function from times to states.
 
-    By these polynomials the search for events evaluates the motion, whatever its method.
+    A side is the part after or the part before the start. By these polynomials the search for events evaluates the
+    motion, whatever its method.
     """
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
@@ -271,7 +277,9 @@ def _side(motion: Motion, end: float) -> _Side:
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
     """Yield the pieces of a motion, with states set to zero where only rounding errors are left of them.
 
-    An example is the angular velocity of a body after friction has stopped it.
+    An example is the angular velocity of a body after friction has stopped it: its formula shall be zero there, not
+    change its sign again and again. ``blocks`` are the edges of the blocks of states (omega, attitude): a state is
+    compared with the largest value in its block.
     """
     count = blocks[-1]
     terms = [np.abs(piece.rows[:, HEAD:]).reshape(len(piece.rows), -1, count) for piece in pieces]

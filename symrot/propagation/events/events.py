@@ -88,9 +88,9 @@ class Event(NamedTuple):
 
 
 class ZerosNotSeparated(PropagationError):
-    """Raised if a search cannot separate the zeros of the formulas beyond the time ``t``, s.
+    """Raised if a search cannot separate the zeros of the formulas beyond the time ``t``, s, within its limits.
 
-    ``zeros`` lists the zeros before that time.
+    ``zeros`` lists the zeros before that time, ``formulas`` the formulas as text, and ``effort`` how much was computed.
     """
 
     def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
@@ -174,12 +174,19 @@ def _checked(event: Event, where: str) -> Event:
 
 
 def uses_attitude(events: Iterable[Event]) -> bool:
-    """Return whether the formula of at least one event contains a quaternion component."""
+    """Return whether the formula of at least one event contains a quaternion component, q0 to q3.
+
+    The motion then has to compute the attitude.
+    """
     return any(names(event.node) & ATTITUDE for event in events)
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the formula of at least one event contains time, directly or in one of its quantities."""
+    """Return whether the formula of at least one event depends on the time itself, and not only through the states.
+
+    ``quantities`` is the program that computes omega and q from the states; it may contain the time too. If no formula
+    depends on time, the search may count time from the start of the motion.
+    """
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -190,6 +197,8 @@ def event_library_source(
     """Return the C source of a library that locates the events of a motion.
 
     Its functions take the parameters of ``quantities``, the kernel that computes omega and q from the states.
+    ``states`` are the names of the states; ``edges`` and ``scales`` are those of
+    :func:`symrot.propagation.compiled_models.error_blocks`.
     """
     return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
 
@@ -200,7 +209,8 @@ def guard_library_source(
     """Return the C source of a library that locates the zeros of formulas along a motion.
 
     The formulas may be guards, at whose zeros functions such as sign switch. They contain t, omega, q and parameters of
-    ``quantities``, the kernel that computes omega and q from the states.
+    ``quantities``, the kernel that computes omega and q from the states. ``states`` are the names of the states;
+    ``edges`` and ``scales`` are those of :func:`symrot.propagation.compiled_models.error_blocks`.
     """
     from symrot.codegen.printing.event_source import event_definitions
 
@@ -245,7 +255,11 @@ _library = cache(_Library)
 
 
 class _Search:
-    """A search for events along one motion: its state in C, and the number of its operations so far."""
+    """A search for events along one motion: its state in C, and the number of its operations so far.
+
+    ``path`` is the library of the events, ``p`` are its parameters, and ``formulas`` the events as text, for messages.
+    ``error`` is the error of the states, relative to their sizes.
+    """
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
         self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
@@ -290,7 +304,7 @@ class _Search:
         return [entry[:5] for entry in listed if not entry[5]], None
 
     def terms(self, rows: Floats) -> int:
-        """Return the number of coefficients of each polynomial in ``rows``, which is its degree plus 1."""
+        """Return the number of coefficients of each polynomial in ``rows`` (one row per step), its degree plus 1."""
         count: int = (rows.shape[1] - HEAD) // self.library.states
         return count
 
@@ -380,7 +394,8 @@ def search(
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
     """Return the doubts that remain after the search, in the order of the motion: (event, time), each only once.
 
-    A doubt is an extremum so close to zero that the error of the motion matters. It is removed if it lies at a zero.
+    A doubt is an extremum of an event's formula so close to zero that the error of the motion matters. It is removed if
+    it lies at one of ``zeros``. ``t0`` is the start of the motion, s.
     """
     settled: dict[int, list[float]] = {}
     for zero in zeros:
@@ -400,7 +415,8 @@ def signs_at_ends(
 ) -> tuple[list[int], list[int]]:
     """Return two lists: the signs of the formulas just after the start of a piece of the motion, and at its end.
 
-    A sign is 0 if the value is smaller than its rounding error.
+    A sign is 1, -1, or 0 if the value is smaller than its rounding error. ``path`` is the library of the formulas, and
+    ``p`` are its parameters.
     """
     searcher, numbers = _Search(path, p, formulas), range(len(formulas))
     last = float(piece.edges[-1])
@@ -410,10 +426,10 @@ def signs_at_ends(
 
 
 def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
-    """Return the sign of a formula just after the start of a piece of the motion.
+    """Return the sign (1, -1, 0) of the formula with index ``number``, just after the start of a piece of the motion.
 
     At the start itself the value may be zero. The sign is therefore taken a little later, at increasing distances,
-    until it exceeds the rounding error and stays the same at twice the distance.
+    until it exceeds the rounding error and stays the same at twice the distance. The result is 0 if it never does.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
@@ -430,8 +446,9 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
     """Join adjacent intervals of the same event that may contain zeros, and split the list at the end of a piece.
 
-    Return the intervals whose zeros can be located now, and the intervals that reach the time ``last`` and may continue
-    in the next piece of the motion.
+    ``entries`` are lists [event, start, end, sign before, sign after] from :meth:`_Search.entries`. Return two such
+    lists: the intervals whose zeros can be located now, and those that reach the time ``last`` and may continue in the
+    next piece of the motion.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -474,7 +491,8 @@ def _settled(
 ) -> float | None:  # fmt: skip
     """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None.
 
-    Nothing is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
+    The entries are lists [event, start, end, sign before, sign after] of a piece of the motion, which starts at ``t0``,
+    s. Nothing is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
     ``left`` holds, for each event, the number of zeros after which it ends the motion (0: never); this function counts
     it down.
     """
@@ -482,7 +500,10 @@ def _settled(
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign of a formula just beside t, in the direction ``step``; 0 if rounding errors are larger."""
+        """Return the sign (1, -1 or 0) of a formula just beside t, in the direction ``step`` (1 or -1).
+
+        It is 0 if the value is smaller than its rounding error at all distances up to ``end``.
+        """
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -523,7 +544,8 @@ def stepped(
 ) -> Generator[Piece, None, None]:
     """Integrate a motion from its start to ``end``, s, and yield its polynomials, piece by piece.
 
-    The recorded steps are appended to ``records``. If an error ends the motion early, it is appended to ``broken``.
+    The recorded steps are appended to ``records``, from which the states can be computed later. If an error ends the
+    motion early, it is appended to ``broken`` instead of being raised.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

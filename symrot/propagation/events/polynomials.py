@@ -36,7 +36,8 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 class Piece(NamedTuple):
     """Part of a motion as consecutive polynomials, in the order of the motion.
 
-    Row i is valid from edge i to edge i + 1; edges are times, s.
+    Row i is valid from edge i to edge i + 1; edges are times, s, and decrease in a motion backward in time. The layout
+    of a row is explained in :mod:`symrot.propagation.events.polynomials`.
     """
 
     edges: Floats
@@ -44,7 +45,11 @@ class Piece(NamedTuple):
 
 
 def rows_of(stepper: Any, record: Floats) -> Floats:
-    """Convert the recorded steps of a stepper (Taylor or DOP853) to rows of polynomial coefficients, one per step."""
+    """Convert the recorded steps of a stepper (Taylor or DOP853) to rows of polynomial coefficients, one per step.
+
+    ``record`` is a result of the stepper, one row per step, in the stepper's own layout. The layout of the result is
+    explained in :mod:`symrot.propagation.events.polynomials`.
+    """
     if stepper.name == "taylor":
         return record
     count = len(record)
@@ -60,8 +65,8 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 def _nested(terms: int) -> Floats:
     """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s.
 
-    Dense output gives the states inside a step as a weighted sum of s, s r, s^2 r, s^2 r^2, ..; here s is the fraction
-    of the step and r = 1 - s.
+    Dense output gives the states inside a step as a weighted sum of the ``terms`` functions 1, s, s r, s^2 r, s^2 r^2,
+    ..; here s is the fraction of the step and r = 1 - s.
     """
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
@@ -192,7 +197,8 @@ def fitted_pieces(
 ) -> Generator[Piece, None, None]:
     """Yield long pieces of polynomials that agree with a motion in closed form, which has no steps; see :func:`fitted`.
 
-    ``longest``, s, is a first guess of the length of time that one polynomial can fit.
+    ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`; ``start`` and ``end``, s, are the ends of the
+    motion, in its order. ``longest``, s, is a first guess of the length of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

@@ -33,12 +33,13 @@ LENGTHS = ("radius", "length", "a", "b", "c", "height", "width", "depth", "thick
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of the derivatives: an initial value or a constant.
+    """One number by which a motion is differentiated: a component of the initial state, or a constant of the scene.
 
     Attributes
     ----------
     key, name, unit : str
-        The requested name, the name of this component, and its SI unit; empty if no table states one.
+        The requested name, such as ``"omega"``; the name of this component, such as ``"omega_2"``; its SI unit, or an
+        empty text if no table states one.
     value : Fraction
         Its present value.
     moved : function
@@ -124,7 +125,7 @@ def _number(key: str, value: Any) -> Fraction:
 
 
 def _unit(scene: Scene, key: str) -> str:
-    """Return the SI unit of a key, or an empty text."""
+    """Return the SI unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown."""
     last = key.rpartition(".")[2]
     if last in UNITS:
         return UNITS[last]
@@ -141,7 +142,10 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives by a variable of numbers that follow from a scene; those that are zero are left out.
+    """Return the derivatives, by one variable, of numbers that follow from a scene; those that are zero are left out.
+
+    An example is ``{"I_xx": Fraction(2, 5), ..}`` for the inertia of a sphere of radius 1 m and the variable
+    ``"body.mass"``. The derivative is a difference quotient of exact numbers, over a step of 2^-80 of the variable.
 
     Parameters
     ----------
@@ -170,7 +174,12 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 def _quotient(
     scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers], step: Fraction
 ) -> dict[str, Fraction]:
-    """Return difference quotients of second order: central ones, or one-sided ones at a limit of validity."""
+    """Return difference quotients of the second order, by name: central ones, or one-sided ones at a limit of validity.
+
+    ``numbers`` maps a scene to exact numbers by name, and ``step`` is the change of the variable. A one-sided quotient
+    uses the scenes at 0, 1 and 2 steps to one side; it is needed where the scene is not valid on the other side, for
+    example for a negative mass. If neither side is valid, InputError is raised.
+    """
     assert variable.moved is not None
     schemes: tuple[dict[int, Fraction], ...] = (
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},

@@ -50,6 +50,9 @@ TRANSITION = ("omega", "attitude")
 def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
     """Return the derivatives of a scene's motion at sample times.
 
+    The result holds one column per variable, with the derivatives of omega, of the quaternion, and of the attitude as
+    small rotations about the body axes.
+
     Parameters
     ----------
     scene : Scene
@@ -118,7 +121,12 @@ def _refuse(scene: Scene) -> None:
 
 
 class _Column:
-    """The dependence of a scene on one variable: derivatives of the initial state and of the constants."""
+    """The dependence of a scene on one variable: derivatives, by this variable, of initial state and constants.
+
+    ``start`` is a list of 7 numbers, the derivatives of omega and quaternion at the start; ``constants`` maps the names
+    of constants of body and torques to their derivatives, without those that are zero. ``general`` is the most general
+    structure of the scene, in which every constant has a name.
+    """
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
         self.variable = variable
@@ -140,7 +148,11 @@ def _initial(state: str) -> str:
 
 
 def _start(scene: Scene) -> dict[str, Fraction]:
-    """Return the initial values of the states, by names that differ from the names of all constants."""
+    """Return the initial values of the seven states, by names such as ``"initial omega_1"`` and ``"initial q0"``.
+
+    The word ``initial`` keeps them apart from the constants of the scene, with which they share one dictionary:
+    constants of the scene may be called, for example, ``omega_1``.
+    """
     return dict(zip(map(_initial, STATES), (*scene.initial.omega_b, *scene.initial.quaternion), strict=True))
 
 
@@ -150,9 +162,10 @@ def _columns(scene: Scene, variables: Sequence[Variable]) -> list[_Column]:
 
 
 def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
-    """Return the structure of a scene in which each constant is free that a variable of the derivatives changes.
+    """Return the form of the equations of motion for the derivatives by the variables of ``columns``.
 
-    Such a constant may be zero or one now. Other constants that are zero or one are used as such in the equations.
+    A constant that one of these variables changes becomes a parameter of the equations, even if its value is zero or
+    one now, since its derivative is needed. Any other constant that is zero or one simplifies the equations.
     """
     moving = {name for column in columns for name in column.constants}
     general, inertia = general_structure(scene), scene.body.inertia
@@ -182,7 +195,11 @@ def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
 
 
 def _rates(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates of a structure and their parameters, from the cache or newly derived."""
+    """Return the rates of a plan as a program, and their parameters, from the cache or newly derived.
+
+    The rates are the time derivatives of the states; a program is a list of operations that can be printed as C. The
+    parameters are pairs (name, formula in the constants of the scene).
+    """
     key = f"rates alone\n{kernel_key(plan)}"
     saved = library.fetch(key)
     if saved is None:
@@ -199,9 +216,10 @@ def _rates(plan: Plan) -> tuple[Program, Parameters]:
 
 
 def _library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
-    """Return the compiled library of the motion and its derivatives.
+    """Return the path of the compiled library that integrates the motion and its derivatives together by Taylor series.
 
-    ``depends`` lists, for each column, the parameters that depend on its variable.
+    ``rates`` is the program of the time derivatives of the states. ``depends`` lists, for each variable of the
+    derivatives, the names of those parameters of ``rates`` whose values depend on this variable.
     """
     key = f"variation {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
     source = library.fetch(key)
@@ -230,7 +248,8 @@ def _follow(
 ) -> tuple[Floats, Floats]:
     """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
 
-    ``begin`` is the time, s, of the scene's initial state; default: the start of its span.
+    A column belongs to one variable of the derivatives. ``begin`` is the time, s, at which the scene has its initial
+    state; default: the start of its span.
     """
     begin = float(scene.span.start) if begin is None else begin
     values, slopes = [], []
@@ -279,7 +298,11 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin:
 
 
 def _size(scene: Scene, column: _Column) -> float:
-    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable."""
+    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable.
+
+    The derivatives are then about as large as the states, so that one error control fits both. For a component of omega
+    the largest component is used; for a rotation, or a variable that is zero, the result is 1.
+    """
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)
@@ -287,7 +310,11 @@ def _size(scene: Scene, column: _Column) -> float:
 
 
 def _rotation(q: Floats, slopes: Floats) -> Floats:
-    """Return derivatives of the attitude as small rotations about the body axes, from those of the quaternion."""
+    """Return derivatives of the attitude as small rotations about the body axes, shape (n, 3, columns).
+
+    ``q`` holds quaternions, shape (n, 4), and ``slopes`` their derivatives, shape (n, 4, columns). The rotation is the
+    vector part of ``2 * conjugate(q) * dq``.
+    """
     scalar, vector = q[:, :1, None], q[:, 1:, None]
     along, across = slopes[:, :1], slopes[:, 1:]
     return 2.0 * (scalar * across - vector * along - np.cross(vector, across, axis=1))

@@ -28,7 +28,7 @@ class Instant(NamedTuple):
         return Fraction(self.high) + Fraction(self.low)
 
     def after(self, *seconds: float) -> "Instant":
-        """Return the instant that is later than this instant by the sum of ``seconds``."""
+        """Return the instant that is later than this instant by the sum of ``seconds``, which may be negative."""
         high, low = self
         for second in seconds:
             high, error = two_sum(high, second)
@@ -40,7 +40,7 @@ class Instant(NamedTuple):
         return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:
-        """Return times of the scene, s, converted to seconds since this instant."""
+        """Return times of the scene, s, converted to seconds since this instant; ``times`` is a number or an array."""
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:

@@ -89,7 +89,7 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
+        """Return the motion from its start to ``end``, s: a list of polynomials, and a function from times to states.
 
         If an error ends the motion early, it is appended to ``broken`` and the motion before it is returned.
         """

@@ -33,10 +33,12 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """The guard of a switching function (sign, floor, ..): the function switches when ``formula`` becomes negative.
+    """A formula at whose zero a switching function (sign, floor, ..) switches: when ``formula`` becomes negative.
 
-    ``mode`` is the name of the number that replaces the function in the equations, and ``change`` says how this number
-    changes when the function switches. ``where`` lists the conditions under which the function affects the motion.
+    ``mode`` is the name of the number that replaces the function in the equations. ``change`` is added to this number
+    when the function switches; it is 0 for a sign, whose number changes from 1 to -1 or back. While a sign is held at
+    zero, ``change`` is the value, 1 or -1, with which it leaves. ``where`` lists the conditions under which the
+    function affects the motion.
     """
 
     mode: str
@@ -49,8 +51,10 @@ class Guard(NamedTuple):
 class RegimeParameters(NamedTuple):
     """Parameters of the equations of a smooth motion between switches, as functions of the epoch.
 
-    The epoch is the scene time at which the clock of the motion shows 0. ``invariants`` are the parameters of conserved
-    quantities, as pairs of doubles that do not depend on the epoch; only the Taylor stepper uses them.
+    The epoch is the scene time at which the clock of the motion shows 0. ``rates``, ``guards`` and ``quantities`` are
+    the parameters of the time derivatives of the states, of the formulas whose zeros end the motion, and of the output.
+    ``invariants`` are the parameters of conserved quantities, as pairs of doubles that do not depend on the epoch; only
+    the Taylor stepper uses them.
     """
 
     rates: ShiftedParameters
@@ -62,9 +66,10 @@ class RegimeParameters(NamedTuple):
 class Regime:
     """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it.
 
-    The regime ends when a guard becomes zero. If the motion slides, the arguments of the held functions are zero
+    The regime ends when a guard becomes zero. If the motion slides, the arguments of the functions ``held`` are zero
     throughout; they do not end the regime. Time is counted from the instant at which the motion enters the regime, and
-    this instant is a parameter of rates and guards.
+    this instant is a parameter of rates and guards. ``constants`` are the exact constants of the equations, by name.
+    ``all_switches`` are the switching functions of the scene, ``switches`` those that affect this regime.
     """
 
     def __init__(
@@ -121,7 +126,10 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the equations for given modes (values of switching functions: sign, floor, ..)."""
+        """Return the parameters of the equations for given modes, as functions of the epoch.
+
+        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values.
+        """
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -139,9 +147,10 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of all names in :attr:`formulas`, the arguments of the switching functions.
+        """Return the values, by name, of the modes and parameters in :attr:`formulas`.
 
-        They are the modes (values of the switching functions) and parameters; time is counted from ``zero``.
+        The formulas are the arguments of the switching functions (sign, floor, ..). ``modes`` maps the names of these
+        functions to their values. Time is counted from the instant ``zero``, on which parameters depend.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -151,7 +160,8 @@ class Regime:
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return two lists of parameters: for the stepper, and for the library that searches for switches.
 
-        They hold for the given modes (values of the switching functions), with time counted from ``zero``.
+        They hold for the given values ``modes`` of the switching functions, with time counted from the instant
+        ``zero``.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -167,13 +177,16 @@ class Regime:
         """Return the names of all states and parameters of output quantities that are zero at the state ``y``.
 
         With these names one can decide whether the argument x of a sign(x) stays zero by itself, as in a body at rest.
+        ``modes`` and ``zero`` are explained in :meth:`bound`.
         """
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per held mode; all are positive if nearby motions are driven back to the sliding motion.
+        """Return one number per held function, all positive if nearby motions are driven back to the sliding motion.
 
-        While the motion slides, the arguments of the held functions (sign, ..) stay at zero.
+        While the motion slides, the arguments of the held functions (sign, ..) stay at zero. The numbers belong to the
+        state ``y`` at the time t, s, counted from the instant ``zero``, for the given values ``modes`` of the other
+        functions.
         """
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
@@ -181,7 +194,10 @@ class Regime:
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the values, by name, of the states and of the parameters of the output quantities."""
+        """Return the values, by name, of the states and of the parameters of the output quantities.
+
+        ``modes`` and ``zero`` are explained in :meth:`bound`; ``y`` holds the states.
+        """
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
@@ -190,6 +206,7 @@ class Regime:
         """Return a function that computes the parameters of the rates for an epoch, s after the instant ``zero``.
 
         With these parameters the rates count time from the epoch. Return None if the rates do not depend on time.
+        ``modes`` maps the switching functions to their values.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
@@ -210,9 +227,10 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard (formula whose zero makes a function switch), whether its zero ends the smooth motion.
+        """Return, for each guard of the regime, whether its zero ends the smooth motion.
 
-        It does not if the function has no effect for the given modes, as in an unused branch of ``where``.
+        A guard is a formula whose zero makes a function such as sign switch. It does not end the motion if the function
+        has no effect for the given values ``modes``, as in an unused branch of ``where(condition, u, v)``.
         """
         key = tuple(modes.values())
         if key not in self._active:
@@ -223,14 +241,18 @@ class Regime:
 def _distance(switch: Switch) -> Node:
     """Return a formula that is zero where a switching function (sign, floor, ..) changes its value.
 
-    For a sign it is the argument; for a floor, the argument minus the present integer. The integer is subtracted before
-    the formula is rounded, since far from t = 0 it cancels most digits of the argument.
+    For a sign it is the argument; for ``floor(x)`` it is x minus the present integer, which is zero when x falls to
+    this integer. The integer is subtracted before the formula is rounded, since far from t = 0 it cancels most digits
+    of x.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program with the additional parameters ``more``, which only the search for switches uses."""
+    """Return the program of the output quantities with the additional parameters ``more``, at the end of its array p.
+
+    Only the search for switches uses them.
+    """
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

@@ -75,8 +75,9 @@ class Chunk(NamedTuple):
 class SwitchedRun(RunState):
     """The computation of one motion under torques with switching functions (sign, abs, ..), from its start to its end.
 
-    The clock shows 0 at the last switch, whose time is known to twice the digits of a double. ``t``, the present time,
-    and ``end`` are times on this clock, s.
+    ``system`` holds the switching functions of the motion, and ``end`` is the scene time, s, up to which it is
+    computed, after or before the start. The clock shows 0 at the last switch, whose time is known to twice the digits
+    of a double. The attributes ``t``, the present time, and ``end`` are times on this clock, s.
     """
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
@@ -263,6 +264,7 @@ class SwitchedRun(RunState):
         The guard is needed where the rates have no value. If several functions switch at one time, they do so one after
         the other; in between, the rates may contain, for example, the root of a negative number. ``most`` is the
         largest sign of the guard just after this time: -1 for negative guards only, 0 for guards that stay zero too.
+        ``active`` says, for each guard, whether it can end the regime; ``values`` are the parameters of the guards.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -294,8 +296,10 @@ class SwitchedRun(RunState):
 
         Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
         before a switch at 1 s, and sqrt(t - 1) after it. As long as the impulse is less than the tolerance, the states
-        may change linearly: up to a nearby switch, or away from the last switch. The result consists of the polynomial,
-        a function from times to states, and the guard that becomes zero at the end of the hop, or None.
+        may change linearly: up to a nearby switch, or away from the last switch. The hop starts at the time t, s, with
+        the states y; ``rates`` are the parameters of the rates, and ``error`` is the stepper's error. The result
+        consists of the polynomial, a function from times to states, and the guard that becomes zero at the end of the
+        hop, or None.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -395,7 +399,8 @@ class SwitchedRun(RunState):
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
         """Return whether a guard is negative, just after its function has switched, only because time is rounded.
 
-        The function then must not switch again. The formula of the guard must depend on time alone.
+        The function then must not switch again. The formula of the guard must depend on time alone; for other formulas
+        the result is False.
         """
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
@@ -408,8 +413,9 @@ class SwitchedRun(RunState):
     ) -> tuple[list[Guard], list[Guard]]:
         """Return two lists of guards: those that are negative just after the start of a piece, and those at its end.
 
-        The function (sign, floor, ..) of a negative guard should have switched. ``active`` says, for each guard,
-        whether it can end the regime. ``values`` are the parameters of the guards' formulas for the present modes.
+        A guard is a formula that becomes negative when its function (sign, floor, ..) has to switch: if it is negative,
+        the function should have switched. ``active`` says, for each guard, whether it can end the regime. ``values``
+        are the parameters of the guards' formulas for the present modes.
         """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
@@ -594,7 +600,7 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set each held sign(x) whose x stays at zero by itself to sign(0), and return whether there are any.
+        """Set each held sign(x) whose x stays at zero by itself to its value at zero, and return whether there are any.
 
         While x is held at zero, the formulas contain a mean of sign(x) = 1 and -1. If nothing drives x away from zero,
         as in a body at rest, the value at zero is right instead.
@@ -619,7 +625,11 @@ class SwitchedRun(RunState):
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Set each sign(x) that is 0 to the sign that x has at the end of a piece; return whether one changed."""
+        """Set each sign(x) that is 0 to the sign that x has at the end of a piece; return whether one changed.
+
+        The piece is the next part of the motion. ``active`` says, for each guard of the regime, whether it can end the
+        regime; only their functions are examined.
+        """
         numbers = [
             n
             for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))

@@ -18,6 +18,9 @@ CHATTER = 50  # number of recent switches whose times are stored
 class RunState:
     """Present state of a motion that is followed to one end; time is counted from the last switch.
 
+    A switch is the time at which a function such as sign changes its value in a torque; ``modes`` maps the names of
+    these functions to their present values.
+
     Attributes
     ----------
     zero : Instant
@@ -53,8 +56,9 @@ class RunState:
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
         """Return a function that takes an epoch, s, and returns the rates and the parameters to use with this epoch.
 
-        The rates ``stepped`` are a compiled library or a Python function. With the returned parameters they count
-        time from the epoch. Return None if the rates do not depend on time.
+        The rates ``stepped`` of the smooth motion ``regime`` are a compiled library or a Python function. With the
+        returned parameters they count time from the epoch, which is given in s after the last switch. Return None if
+        the rates do not depend on time.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

@@ -46,7 +46,11 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and a function from times to states."""
+        """Yield each piece in the order of the motion: its polynomials, and a function from times to states.
+
+        The function is valid only within the piece. IntegrationStopped is raised after the last piece if the stepper is
+        stuck.
+        """
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -82,7 +86,10 @@ class SciPyPieces:
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and a function from times to states."""
+        """Yield each piece in the order of the motion: its polynomials, and a function from times to states.
+
+        The function is valid only within the piece. An error or interrupt of SciPy is raised after the piece before it.
+        """
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -132,7 +139,10 @@ class SciPyPieces:
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Raise IntegrationStopped if the rest of the whole motion would take far more evaluations than the limit."""
+        """Raise IntegrationStopped if the rest of the whole motion would take far more evaluations than the limit.
+
+        ``t`` is the present time, s. The pace since the last check decides.
+        """
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run

@@ -95,7 +95,10 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The switching functions (named by their modes) whose arguments are constant, so that they never switch."""
+        """The switching functions, named by their modes, whose arguments are constant, so that they never switch.
+
+        A mode is the number that replaces the function in the formulas.
+        """
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -115,7 +118,10 @@ class SwitchedSystem:
 
     @property
     def undecided(self) -> set[str]:
-        """The switching functions (named by their modes) whose arguments depend on states and are zero at the start."""
+        """The switching functions, named by their modes, whose arguments depend on states and are zero at the start.
+
+        Whether such a function starts with 1 or -1 follows from the motion, not from the initial state alone.
+        """
         return self._initial_modes[1]
 
     @cached_property
@@ -201,7 +207,10 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions of a torque, with the names that their modes have among the plan's constants."""
+    """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states.
+
+    Their modes have the names that they have among the plan's constants, which may begin with a prefix of the torque.
+    """
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -217,7 +226,11 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is nonlinear in a mode, the number that replaces sign, abs, .. in it."""
+    """Return whether a formula of the torque is nonlinear in a mode, the number that replaces sign, abs, .. in it.
+
+    ``mode`` is its name among the plan's constants. The mean of the formula's values at 1 and -1 is then not its value
+    at 0.
+    """
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
     return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
@@ -231,7 +244,7 @@ def is_continuous(switch: Switch) -> bool:
 def _bends(switch: Switch | TorqueSwitch) -> bool:
     """Return whether a function only has a kink where it switches, as abs has, and no jump, as sign has.
 
-    At the switch itself, both values of its mode (the sign of its argument) then give the right result.
+    At the switch itself, both values of its mode (1 and -1, the sign of its argument) then give the right result.
     """
     return switch.at_zero == 1
 
