@@ -73,9 +73,10 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 
 
 def _units(quaternions: Floats) -> dd.Pair:
-    """Return quaternions divided by their norms, as double-double numbers.
+    """Return quaternions, shape (n, 4), divided by their norms, as double-double numbers.
 
-    The error of each component is less than a quarter of :data:`_DOUBT` times the step of the rounding grid.
+    The error of each component is less than a quarter of :data:`_DOUBT` times the step of the grid to which low parts
+    are rounded, so that the caller can see whether the rounding is in doubt.
     """
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
@@ -93,7 +94,10 @@ def _units(quaternions: Floats) -> dd.Pair:
 
 
 def _sign(i: int, j: int) -> float:
-    """Return the sign in the product of two of the units 1, i, j, k, numbered 0 to 3: i j = k -> 1, j i = -k -> -1."""
+    """Return the sign of the product of units i and j of the quaternions; the units 1, i, j, k have the numbers 0 to 3.
+
+    Example: i j = k gives ``_sign(1, 2) = 1``, and j i = -k gives ``_sign(2, 1) = -1``.
+    """
     one, other = ([float(k == unit) for k in range(4)] for unit in (i, j))
     return float(hamilton(one, other)[i ^ j])
 
@@ -156,9 +160,10 @@ def _together(values: Sequence[Column], n: int) -> Floats:
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return whether each angular velocity, shape (n, 3), is of usual size, so that the functions below accept it.
+    """Return for each angular velocity, shape (n, 3), whether its size is usual, so that the functions below accept it.
 
-    For other sizes, motions have to be computed one by one.
+    It is usual if the largest component is zero or from SMALLEST to LARGEST; other motions have to be computed one by
+    one.
     """
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
@@ -166,7 +171,10 @@ def usual(omega: Floats) -> NDArray[np.bool_]:
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities with components set to zero where they are too small to affect the motion."""
+    """Return angular velocities, shape (n, 3), in which components too small to affect the motion are replaced by zero.
+
+    A single motion ignores these components too, so that a batch gives the same bits.
+    """
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 

@@ -47,7 +47,7 @@ _loaded: dict[str, tuple[Any, ...]] = {}
 
 @cache
 def _files() -> dict[str, Path]:
-    """Return the paths of all C files and headers of the closed forms, by file name."""
+    """Return the paths of all C files and headers of the closed forms, by file name, such as ``"free_body.c"``."""
     return {file.name: file for file in Path(__file__).parent.rglob("*.[ch]")}
 
 
@@ -73,7 +73,10 @@ def joined(*names: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Start to compile the libraries of a closed form, and return the running compilations.
+    """Start to compile the libraries of a closed form, and return the compilations, which run in the background.
+
+    ``name`` is the name of its C files, such as ``"free_body"``. A caller may do other work until it calls
+    :func:`load`.
 
     There is one library for each name in :data:`PARTS`; a cached library is not compiled again.
 
@@ -92,7 +95,10 @@ def begin(name: str) -> list[library.Building]:
 
 
 def loaded(name: str) -> bool:
-    """Return whether the libraries of a closed form are loaded, so that no compiler is needed."""
+    """Return whether the libraries of the closed form ``name`` are loaded in this process.
+
+    If they are, no compiler is needed.
+    """
     return name in _loaded
 
 

@@ -102,7 +102,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
 
 class _Linked(NamedTuple):
-    """The compiled loop over motions, and the addresses of the C functions of one closed form that the loop calls."""
+    """The compiled loop over many motions, linked to the C functions of one closed form, whose addresses it calls."""
 
     run: Any
     prepare: int

@@ -1,4 +1,9 @@
-"""The table of closed forms: each has a condition on scenes, and a function that returns its motions."""
+"""The table of closed forms: each has a condition on scenes, and a function that returns its motions.
+
+A closed form is a formula for angular velocity and attitude at any time, such as the theta functions of a free body.
+:func:`exact_form` chooses the first form of the table :data:`FORMS` whose condition a scene meets; a scene that meets
+none is integrated step by step.
+"""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -17,14 +22,15 @@ __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """Interface of a motion in closed form; times, s, are counted from the initial state."""
+    """The type of a motion that is computed by a closed form; times, s, are counted from the initial state."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4) at the times t.
+        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4) at the n times ``t``, s.
 
-        A quantity that is not requested is None.
+        The attitude consists of unit quaternions, scalar first, body to space. ``omega`` and ``quaternion`` say which
+        of the two results are computed; the other one is None.
         """
 
 
@@ -33,7 +39,11 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """One kind of closed form: its description, its condition on a scene, and a function that returns motions."""
+    """One row of the table of closed forms: its name, its condition on a scene, and a function that returns motions.
+
+    An example is "symmetric gyrostat, two steady rotations", which applies to a symmetric body whose only torque comes
+    from a rotor along the symmetry axis.
+    """
 
     name: str
     applies: Callable[[Scene], bool]
@@ -69,7 +79,10 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the index (0, 1 or 2) of the body axis to which a vector is parallel, or None."""
+    """Return the index (0, 1 or 2) of the only nonzero component of a vector: the body axis to which it is parallel.
+
+    The result is None if no component, or more than one, is nonzero. Example: ``(0, 0, 2)`` gives 2.
+    """
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -113,7 +126,11 @@ def _gyrostat(scene: Scene) -> Starts:
 
 
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
-    """Return the sum of a scene's constant torques and the sum of its linear damping coefficients, body components."""
+    """Return two vectors of body components: the sum of a scene's constant torques, and its damping coefficients.
+
+    The torques, N m, are those of kind ``constant_body``; the coefficients, N m s, are the sums of the fields
+    ``linear`` of the torques of kind ``damping``. Without such torques, a vector is zero.
+    """
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
         vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
@@ -179,10 +196,11 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function that takes a scene and returns the body axis parallel to a vector of its only torque.
+    """Return a function from a scene to the index of the body axis to which a vector of its only torque is parallel.
 
-    ``name`` is the name of the vector, such as ``"center_of_mass"``; the function returns an index, or None if the
-    vector is not parallel to a body axis.
+    ``name`` is the name of the vector: ``"center_of_mass"`` of a gravity torque, or ``"angular_momentum"`` of a rotor.
+    The function returns None if the vector is not parallel to a body axis. It gives heavy tops and gyrostats the entry
+    ``axis`` of their row in the table.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
@@ -246,7 +264,11 @@ FORMS = (
 
 
 def exact_form(scene: Scene) -> ClosedForm | None:
-    """Return the closed form of a scene's motion, or None if no form of the table applies."""
+    """Return the first closed form in the table that applies to a scene, or None if none applies.
+
+    None means that the motion must be integrated step by step. It is also the result for a scene with a torque given by
+    a table of samples.
+    """
     if scene.table is not None:  # the conditions do not cover a torque given by samples
         return None
     return next((form for form in FORMS if form.applies(scene)), None)

@@ -1,8 +1,8 @@
-"""Equations of motion of a plan: Euler's equations and the quaternion rates, only for the states of the plan.
+"""Equations of motion of a rigid body: Euler's equations and the quaternion rates, for the states of a plan.
 
-The equations are derived from the structure of the plan, which says which constants are zero, equal or free:
-``I domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and
-``dq/dt = 1/2 q (0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+The equations are derived from the structure of the plan, which says which constants are zero, equal or free: ``I
+domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q
+(0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_
 
 @dataclass(frozen=True)
 class AngleMotion(Motion):
-    """The symbols of a motion whose attitude is given by Euler angles instead of a quaternion."""
+    """The symbols of a motion whose attitude is given by Euler angles (of ``sequence``) instead of a quaternion."""
 
     sequence: str
 
@@ -40,7 +40,10 @@ class AngleMotion(Motion):
 
 @dataclass(frozen=True)
 class Equations:
-    """First-order equations of motion, and the quantities from which they were derived."""
+    """First-order equations of motion, ``d(states)/dt = rates``, and the quantities from which they were derived.
+
+    Numeric kernels are printed from them, and conserved quantities are decided with them.
+    """
 
     states: tuple[Symbol, ...]
     rates: tuple[Expr, ...]  # d(states)/dt
@@ -73,7 +76,11 @@ class Equations:
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor of a plan as a matrix of symbols; equal moments have the same symbol."""
+    """Return the inertia tensor, shape (3, 3), as a matrix of symbols: A, B, C on the diagonal, or I_xx to I_zz.
+
+    ``inertia`` says which moments are equal and which entries are zero; equal moments have the same symbol. Example:
+    the moments ``"AAC"`` give ``diag(A, A, C)``.
+    """
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -148,7 +155,10 @@ def _read(values: Any, expectation: str) -> Matrix:
 
 
 def inverse(tensor: Matrix) -> Matrix:
-    """Return the inverse of a symbolic 3 x 3 matrix, computed from the cross products of its columns."""
+    """Return the inverse of a symbolic 3 x 3 matrix, computed from the cross products of its columns.
+
+    A diagonal matrix gives the reciprocals of its entries; the determinant must not be zero.
+    """
     if tensor.is_diagonal():
         return diag(*(1 / entry for entry in tensor.diagonal()))
     first, second, third = (tensor.col(i) for i in range(3))
@@ -157,9 +167,11 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the symbols that describe a motion of the given structure, its attitude states, and its relations.
+    """Return the symbols of a motion of the given structure, its attitude states, and its relations.
 
-    A relation is an expression that is always zero, such as the squared norm of the quaternion minus 1.
+    The attitude states are the quaternion, three Euler angles, the one angle of a rotation about one axis, or nothing
+    if the attitude is not computed. A relation is an expression that is always zero, such as the squared norm of the
+    quaternion minus 1; proofs may use it.
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
@@ -187,7 +199,10 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free."""
+    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free.
+
+    If a torque has modes that are held (its guards stay at zero), the equations are those of :func:`sliding`.
+    """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -215,7 +230,11 @@ def equations_of_motion(structure: Structure) -> Equations:
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
-    """Return the equations of a motion that slides along surfaces at which the torque jumps: each guard stays at zero.
+    """Return the equations of a motion that slides along surfaces at which a torque jumps.
+
+    ``held`` lists each such torque and its mode. A guard is the formula whose sign the torque depends on, such as
+    omega_1 in sign(omega_1); its mode is the symbol that stands for this sign. While the motion slides, each guard
+    stays at zero; a body held at rest by dry friction is an example.
 
     A guard is the formula whose sign the torque depends on, and its mode is the symbol that stands for this sign. The
     modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives

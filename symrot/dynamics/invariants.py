@@ -32,7 +32,11 @@ TORQUE_PHRASES = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """A candidate for a conserved quantity; ``holds`` says whether it is conserved, ``reason`` why or why not."""
+    """A candidate for a conserved quantity, such as the energy, and whether it is conserved.
+
+    ``holds`` says whether it is, and ``reason`` why or why not, as text for users: "changed by damping". If the
+    question could not be decided, ``holds`` is False and ``reason`` says so.
+    """
 
     name: str
     unit: str
@@ -42,7 +46,11 @@ class Invariant:
 
 
 def rate_along(expression: Expr, equations: Equations) -> Expr:
-    """Return the time derivative of a quantity along the motion that the equations describe."""
+    """Return the time derivative of ``expression``, a formula in t and the states, along the motion.
+
+    It is ``partial F/partial t + grad F . rates`` with the rates of ``equations``; a conserved quantity has the rate
+    zero.
+    """
     rates = zip(equations.states, equations.explicit_rates, strict=True)
     return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
 
@@ -50,7 +58,9 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield candidates for conserved quantities, as (name, unit, value, formula to test).
 
-    The formula to test is constant if and only if the value is constant.
+    They are the energy, the angular momentum (its magnitude if the attitude is not computed, otherwise its space
+    components), the quantities that a torque suggests, and the spin about each symmetry axis. The formula to test is
+    constant exactly if the value is, but simpler: for the magnitude it is the square.
     """
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
@@ -72,9 +82,10 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates that the direction of a torque suggests, as (name, unit, value, formula to test).
+    """Yield candidates that a torque suggests, as (name, unit, value, formula to test).
 
-    Under gravity, for example, the vertical angular momentum may be conserved.
+    Gravity along a direction that is no coordinate axis suggests the vertical angular momentum; ``gravity_gradient``
+    suggests the Jacobi integral, energy minus mean motion times L_z. Other torques suggest nothing.
     """
     if not isinstance(torque, FieldTorque):
         return
@@ -107,7 +118,7 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
 
 
 def _listed(kinds: Sequence[str]) -> str:
-    """Return the kinds of torques as words of a sentence, joined by "and", each kind once."""
+    """Return kinds of torques as words for a sentence, each kind once, such as "gravity and damping"."""
     return " and ".join(TORQUE_PHRASES.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 

@@ -20,7 +20,10 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """What the equations assume about a constant: that it is 0, 1 or -1, or that it is free (any value)."""
+    """What the equations assume about a constant: that it is 0, 1 or -1, or nothing (free: it stays a symbol).
+
+    A constant that is 0, 1 or -1 in the scene disappears from the formulas, which makes them shorter.
+    """
 
     ZERO = "0"
     ONE = "1"
@@ -35,14 +38,21 @@ FieldPattern = Pattern | tuple[Pattern, ...]
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
-    """Return the names of the components of a field: ``c_1 .. c_3`` of a vector, ``c_0 .. c_3`` of a quaternion."""
+    """Return the names of the numbers in a torque's field, for the symbols of the equations.
+
+    A number has the name of the field, a vector ``c`` has ``c_1, c_2, c_3``, a quaternion ``c_0`` to ``c_3``.
+    ``pattern`` tells which of these the field is.
+    """
     if isinstance(pattern, Pattern):
         return [name]
     return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
 
 
 class PrincipalInertia(NamedTuple):
-    """Principal moments of inertia about the body axes 1, 2, 3, each named A, B or C; equal moments share a letter."""
+    """Principal moments of inertia about the body axes 1, 2, 3, as letters A, B, C; equal moments share a letter.
+
+    Example: ``"AAC"`` is a body that is symmetric about axis 3.
+    """
 
     moments: str = "ABC"
 
@@ -86,13 +96,13 @@ class FieldTorque(NamedTuple):
     fields: tuple[tuple[str, FieldPattern], ...]
 
     def number(self, name: str) -> Pattern:
-        """Return the pattern (zero, one or free) of a field that is a number."""
+        """Return the pattern (0, 1, -1 or free) of the field ``name``, which is a number, such as ``"weight"``."""
         pattern = dict(self.fields)[name]
         assert isinstance(pattern, Pattern)
         return pattern
 
     def vector(self, name: str) -> tuple[Pattern, ...]:
-        """Return the patterns (zero, one or free) of the components of a field that is a vector or a quaternion."""
+        """Return the patterns (0, 1, -1 or free) of the components of the field ``name``, a vector or a quaternion."""
         pattern = dict(self.fields)[name]
         assert isinstance(pattern, tuple)
         return pattern
@@ -202,11 +212,17 @@ class Structure:
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """The two facts that eliminate states: the only axis of rotation, and the constant components of omega_b."""
+        """The facts that eliminate states: ``planar``, ``initial_quaternion`` and ``constant``, see :class:`Structure`.
+
+        Two structures with the same reductions have the same states.
+        """
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure in which all components of omega_b and, if the attitude is computed, of q are states."""
+        """Return the structure in which no state is eliminated, so that it fits every initial state.
+
+        All components of omega_b are states, and so are those of q if the attitude is computed.
+        """
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:

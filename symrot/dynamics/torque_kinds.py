@@ -14,7 +14,10 @@ EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"
 
 
 class Field(NamedTuple):
-    """One value that describes a torque, such as a stiffness: its shape, unit, meaning, sign and default value."""
+    """One value that describes a torque, such as a stiffness: its shape, unit, meaning, sign and default value.
+
+    The reader of scenes checks a torque's table by these rows.
+    """
 
     name: str
     shape: str  # scalar | vector | scalar or vector | attitude | formulas | parameters | a choice "x|y"
@@ -26,9 +29,9 @@ class Field(NamedTuple):
 
 
 class TorqueKind(NamedTuple):
-    """One kind of torque: its name, its fields, and the point about which the body must rotate.
+    """One kind of torque, such as ``"gravity"``: its name, its fields, and the point about which the body must rotate.
 
-    ``about`` names that point: ``any``, ``fixed_point`` or ``center_of_mass``.
+    ``about`` names that point: ``center_of_mass``, ``fixed_point``, or ``any`` if both are allowed.
     """
 
     kind: str

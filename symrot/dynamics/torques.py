@@ -56,7 +56,7 @@ LEVELLING = (tanh, atan, exp, log)  # functions whose doubles become equal to th
 
 @dataclass(frozen=True)
 class Motion:
-    """The quantities on which a torque may depend, all as formulas in the states."""
+    """The quantities on which a torque may depend (angular velocity, attitude, inertia), as formulas in the states."""
 
     omega_b: Matrix  # rad/s, shape (3, 1)
     quaternion: tuple[Expr, ...] | None  # body to space; None when the attitude is not computed
@@ -69,7 +69,11 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """The formula of a torque, N m, body components, with its potential, angular momentum and named quantities."""
+    """The formula of one torque, with the potential and the angular momentum that it contributes.
+
+    All vectors are in body components. A rotor has an angular momentum and no torque; a spring has a torque and a
+    potential.
+    """
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None if the torque has no potential
@@ -133,9 +137,9 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return the cross product with terms in the same product of variables collected, as in (C - B) r_2 r_3.
+    """Return the cross product ``left x right``, in which terms with the same product of ``variables`` are collected.
 
-    If the moments B and C have the same symbol, this component is zero without further simplification.
+    An example is ``(C - B) r_2 r_3``, which is 0 at once if the moments B and C have the same symbol.
     """
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
@@ -201,7 +205,10 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
-    """Return the law of one torque (its formula, potential, ..) in terms of the quantities of a motion."""
+    """Return the law of one torque (its formula, potential, ..) in terms of the quantities of ``motion``.
+
+    ``structure`` says which constants of the torque are zero, one or free symbols.
+    """
     if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
         torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
@@ -211,7 +218,10 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values, by name, of all names that the formulas of an ``expression`` torque may contain."""
+    """Return the values, by name, of all names that the formulas of an ``expression`` torque may contain.
+
+    The names are those of the time, angular velocity, attitude and so on, and of the torque's own parameters and modes.
+    """
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
@@ -235,7 +245,7 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the value of a torque's field, a scalar, a vector or a quaternion, as symbols or exact numbers.
+    """Return the value of a torque's field as symbols or exact numbers: a scalar, a vector or a quaternion.
 
     The components of a vector are numbered from 1, the components of a quaternion from 0.
     """

@@ -267,7 +267,11 @@ class Ensemble(MotionSamples):
         return percentiles
 
     def _statistic(self, quantity: str, omit_stopped: bool, pair: tuple[Callable[..., Any], Callable[..., Any]]) -> Any:
-        """Return a statistic over the motions; ``pair`` has a function that uses all values, and one that skips NaN."""
+        """Return a statistic of a quantity over the n motions, at each sample time: shape (m, ...).
+
+        ``pair`` has a function that uses all values, such as ``numpy.mean``, and one that skips NaN, for
+        ``omit_stopped``.
+        """
         if quantity in UNAVERAGED or quantity not in QUANTITIES:
             names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")

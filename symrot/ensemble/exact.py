@@ -33,14 +33,19 @@ MOST_BITS = 59  # largest number of conditions in a pattern, without the three o
 
 
 class Kind(NamedTuple):
-    """The name of a closed form and the index of the body axis to which it refers; each may be None."""
+    """A closed form and the index (0, 1 or 2) of the body axis to which it refers, such as a symmetry axis.
+
+    ``form`` is None for trajectories without a closed form, ``axis`` for a form without an axis.
+    """
 
     form: ClosedForm | None
     axis: int | None
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the kinds of closed form that occur in an ensemble, each with the indices of its trajectories.
+    """Return the closed forms that occur in an ensemble, each with the indices of the trajectories that have it.
+
+    The entry with the form None holds the trajectories that have no closed form.
 
     The closed form depends only on which components are zero and which constants are equal. Therefore only one
     trajectory is examined for each such pattern.
@@ -60,7 +65,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return groups of trajectories, as pairs (pattern, row indices).
+    """Return groups of trajectories that have the same closed form for certain, as pairs (pattern, row indices).
 
     In all trajectories of a group, the same components are zero and the same constants are equal. The pattern is a key
     for them; it is None if the trajectory has to be examined alone.
@@ -95,9 +100,9 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories with the same closed form, and their constants as arrays.
+    """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays.
 
-    ``batch`` is None if the trajectories are computed one by one.
+    ``batch`` is None if the trajectories are computed one by one; ``usual`` says for which rows the arrays are exact.
     """
 
     form: ClosedForm
@@ -107,7 +112,9 @@ class Solved(NamedTuple):
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories to compute in closed form.
+    """Return the trajectories of an ensemble to compute in closed form, grouped by their form; the others need steps.
+
+    ``times`` are the sample times and ``start`` the initial time, s.
 
     With ``faster``, return only those for which this is faster than steps. The choice uses times that were measured, in
     microseconds per trajectory, for rotation by 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12, and 400 trajectories of
@@ -246,7 +253,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """A group of trajectories that have the same closed form, about the same body axis."""
+    """The trajectories that one batch computes: those with the same closed form about the same body axis."""
 
     variation: Variation
     axis: int | None
@@ -254,7 +261,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return a part with only the trajectories whose entry in ``chosen`` is true."""
+        """Return the part with only those trajectories whose entry in the Boolean array ``chosen`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
@@ -386,7 +393,8 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
     """Return one component of a field, such as ``torque``, summed over all torques of one kind in the scene.
 
-    Return None if there are several such torques and the component varies in the ensemble.
+    The component belongs to body axis ``axis``. It is one Fraction, or an array if it varies; the result is None if it
+    varies and there are several such torques, since their sum would have to be computed for each trajectory.
     """
     variation = part.variation
     components = [

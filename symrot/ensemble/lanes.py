@@ -59,7 +59,7 @@ ORDERS = (
 
 
 def order_for(tolerance: float) -> int:
-    """Return the fastest order of the Taylor series for a tolerance, as measured.
+    """Return the order of the Taylor series that takes the least time for a tolerance, from a table of measurements.
 
     ``python -m symrot.bench.ensemble --orders`` prints the times.
     """
@@ -91,7 +91,11 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of the library of :func:`translation_unit`, given the C text of its Taylor series."""
+    """Return the C source of the library of :func:`translation_unit`, given the C text of its Taylor series.
+
+    ``definitions`` is this text; the stepper and its headers are put around it. ``width`` is the number of lanes, as
+    there.
+    """
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
     shared, operations, series, steps = map(c_text, paths)
@@ -167,7 +171,7 @@ class Lanes:
 
 @cache
 def lanes(path: str) -> Lanes:
-    """Return the loaded library at a path. Each library is loaded only once."""
+    """Return the library at ``path``, built from :func:`translation_unit`; each library is loaded only once."""
     return Lanes(path)
 
 
@@ -270,7 +274,11 @@ class LaneIntegration:
         return Outcome(grid, counted[0], counted[1], messages)
 
     def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
-        """Return, for each motion, the reason why it stopped early, or an empty text."""
+        """Return, for each motion, the reason why it stopped early, or an empty text.
+
+        ``status`` and ``reached`` hold, for each leg (a motion in one direction of time), how it ended and at which
+        time.
+        """
         motion, first, samples, _ = self.legs.rows
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
@@ -283,12 +291,18 @@ class LaneIntegration:
 
 
 def follow(*arguments: Any, **options: Any) -> Outcome:
-    """Return the states of n motions at their sample times; the arguments are as for :class:`LaneIntegration`."""
+    """Integrate n motions in SIMD lanes, and return their states at the sample times.
+
+    The arguments are as for :class:`LaneIntegration`, which this function creates and runs once.
+    """
     return LaneIntegration(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Run each job in its own thread; an interrupt stops all threads."""
+    """Integrate the jobs, each in its own thread; an interrupt (Ctrl-C) stops all threads.
+
+    Each job fills its own rows of the arrays of states.
+    """
     if len(jobs) == 1:
         library.work(jobs[0])
         return

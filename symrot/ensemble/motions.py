@@ -44,7 +44,10 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """The result for n motions: samples at m times each (NaN at times that were not reached), and the costs."""
+    """The samples of n motions at m times each, and the method and cost of each motion.
+
+    Samples are NaN at times that a motion did not reach.
+    """
 
     omega: Floats  # (n, m, 3)
     quaternion: Floats | None  # (n, m, 4)
@@ -55,7 +58,7 @@ class Followed(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """The trajectories to compute, with their times, the tolerance and the number of threads."""
+    """What to compute for an ensemble: the trajectories, their equations (the plan), times, tolerance and threads."""
 
     variation: Variation
     plan: Plan
@@ -65,7 +68,11 @@ class Problem(NamedTuple):
     workers: int
 
     def of(self, rows: Integers) -> "Problem":
-        """Return the problem for some of the motions, with equations that are chosen for their constants."""
+        """Return the problem for the motions ``rows`` alone, with a new plan.
+
+        The plan may use more facts than the plan for all motions, such as a constant that is zero in these motions
+        only.
+        """
         variation = self.variation.of(rows)
         times = self.times if self.times.ndim == 1 else self.times[rows]
         return self._replace(variation=variation, plan=variation.plan(), times=times)
@@ -95,7 +102,10 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Return the motions of all groups in the order of the ensemble."""
+    """Join the results for groups of motions to one result, in the order of the ensemble.
+
+    ``groups[k]`` holds the indices, in the ensemble, of the motions in ``parts[k]``.
+    """
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:
@@ -189,14 +199,18 @@ def _switched(
 
 
 def _solved(problem: Problem, method: str) -> list[Solved]:
-    """Return the trajectories that ``method`` computes in closed form."""
+    """Return the trajectories that ``method`` computes in closed form; none if the method takes steps."""
     if method in ("exact", "auto"):
         return choose(problem.variation, problem.times, problem.t0, faster=method == "auto")
     return []
 
 
 def _stepping_method(problem: Problem) -> str:
-    """Return the name of the method for motions without a closed form."""
+    """Return the method that ``auto`` uses for motions without a closed form.
+
+    It is ``taylor``, ``dop853`` for rates with kinks, ``scipy`` without a C compiler, or ``constant`` if nothing
+    changes.
+    """
     if not problem.plan.states:
         return "constant"
     if missing_compiler():
@@ -208,7 +222,10 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that integrates motions of a plan in SIMD lanes, for a tolerance."""
+    """Return the compiled library that integrates motions of a plan in SIMD lanes.
+
+    ``kernel`` holds the equations of the plan; ``tolerance`` determines the order of the Taylor series.
+    """
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -221,7 +238,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
 
 class _Stepped:
-    """The trajectories of an ensemble that are integrated numerically, with their parameters and initial states."""
+    """The trajectories of an ensemble that are integrated step by step, with their parameters and initial states."""
 
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.problem, self.plan, self.chosen = problem, problem.plan, chosen
@@ -275,7 +292,7 @@ class _Stepped:
             quaternion[chosen] /= size
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
-        """Return the kernel's parameters that the named outputs need, as pairs (name, formula)."""
+        """Return the parameters (constants of the kernel) that the named outputs need, as pairs (name, formula)."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
         needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):

@@ -1,6 +1,7 @@
-"""Values of a kernel's parameters for each trajectory of an ensemble.
+"""Values of the parameters of a kernel (the compiled equations) for each trajectory of an ensemble.
 
-Parameters that do not vary are evaluated once.
+A parameter, such as ``(B - C)/A``, is a formula in the constants of the scene. Parameters that do not vary are
+evaluated once.
 """
 
 from collections.abc import Sequence
@@ -23,7 +24,7 @@ OMEGA = ("omega_1", "omega_2", "omega_3")
 
 
 class Numbers:
-    """The constants of some trajectories of an ensemble, as exact numbers.
+    """The constants of some trajectories of an ensemble as exact numbers, from which kernel parameters are evaluated.
 
     Parameters
     ----------

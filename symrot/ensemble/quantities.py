@@ -17,7 +17,10 @@ __all__ = ["Source"]
 
 
 class Source(NamedTuple):
-    """The data for computing quantities: the variation of an ensemble, and a plan that is valid for all its motions."""
+    """What :meth:`evaluate` needs to compute quantities: an ensemble's variation, and a plan valid for all its motions.
+
+    The variation holds the initial states and the constants that differ between motions.
+    """
 
     variation: Variation
     plan: Plan

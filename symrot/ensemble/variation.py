@@ -1,4 +1,4 @@
-"""Variations: the checked arrays that describe an ensemble, and a plan that is valid for all its trajectories.
+"""Variations: the checked arrays that describe an ensemble, and a plan (choice of equations) valid for all of it.
 
 A column is the array of the values of one constant, one value per trajectory. The place of a constant is its position
 in the scene: in the inertia tensor, or in a field of a torque.
@@ -55,7 +55,10 @@ _caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their
 
 
 class Place(NamedTuple):
-    """The position of a constant in a scene: in the inertia tensor, or in a field of a torque."""
+    """The position of a constant in a scene: in the inertia tensor, or in a field of a torque.
+
+    Example: component 3 of gravity's ``center_of_mass``, the first torque, is ``(0, "center_of_mass", 2)``.
+    """
 
     torque: int  # -1: the inertia
     field: str
@@ -64,9 +67,9 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Variation:
-    """The description of an ensemble: initial states of n trajectories, and a column for each constant that varies.
+    """What differs between the n trajectories of an ensemble: initial states, and a column for each varying constant.
 
-    Constants have the same names as in plans.
+    Constants have the same names as in plans, such as ``weight`` or ``I_xx``.
     """
 
     scene: Scene
@@ -79,17 +82,23 @@ class Variation:
         return len(self.omega)
 
     def of(self, rows: NDArray[np.intp]) -> "Variation":
-        """Return the variation of some of the trajectories."""
+        """Return the variation of only the trajectories with the indices ``rows``."""
         quaternion = None if self.quaternion is None else self.quaternion[rows]
         columns = {name: column[rows] for name, column in self.columns.items()}
         return replace(self, omega=self.omega[rows], quaternion=quaternion, columns=columns)
 
     def scene_of(self, i: int) -> Scene:
-        """Return the scene of trajectory i; values from the arrays of the variation become exact fractions."""
+        """Return the scene of trajectory i: the common scene with this trajectory's initial state and constants.
+
+        The doubles in the arrays become fractions of exactly the same value.
+        """
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
     def initial(self, i: int) -> Initial:
-        """Return the initial state of trajectory i; values from the arrays of the variation become fractions."""
+        """Return the initial state of trajectory i; doubles become fractions of exactly the same value.
+
+        A quaternion is divided by its norm. Without an array of quaternions, the attitude is the scene's.
+        """
         x, y, z = map(Fraction, self.omega[i].tolist())
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
@@ -142,14 +151,18 @@ class Variation:
         return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
-        """Return the prefix of the names of a torque's constants, such as ``torque2_``, or an empty text."""
+        """Return the text before the names of the constants of torque number ``torque`` (from 0), such as ``torque2_``.
+
+        It is empty if the names are unique without it.
+        """
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the values of the components that do not vary, in the vector of which ``name`` is a varying component.
+        """Return the constants that do not vary in the vector or tensor that contains the constant ``name``.
 
-        A value that differs from the nearest double by more than 2^-200 is left out.
+        They are compared with the varying constant ``name``, to detect equal constants. A value that differs from the
+        nearest double by more than 2^-200 is left out, because no double in a column can equal it.
         """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
@@ -231,7 +244,7 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return the entries, by name, of an inertia tensor that represents all trajectories.
+        """Return the entries, by name, of one inertia tensor from which a plan for all trajectories is made.
 
         Its moments are equal and its products zero only if they are so in every trajectory.
         """
@@ -256,7 +269,10 @@ class Variation:
 
 
 def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
-    """Return whether two constants are equal: one entry per trajectory, or one value if neither constant varies."""
+    """Return whether two constants are equal: an array with one entry per trajectory, or one bool if neither varies.
+
+    Two constants that do not vary are equal up to 2^-200 of their size.
+    """
     if isinstance(one, Fraction) and isinstance(other, Fraction):
         return number.equal(one, other)
     left, right = (float(value) if isinstance(value, Fraction) else value for value in (one, other))
@@ -264,21 +280,25 @@ def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the name of a constant in its torque, and its index if it is a component of a vector, else None.
+    """Return the arguments (name, index) with which a :class:`Torque` of a scene reads or replaces one constant.
 
-    ``entry`` is the ``entry`` of a :class:`Place`: this index, or the name of a parameter of the torque's formulas.
+    ``entry`` is the ``entry`` of a :class:`Place`. If it is the name of a parameter of the torque's formulas, the
+    result is this name and None; otherwise it is ``field`` and the index in a vector (None if the field is a number).
     """
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    """Return a quaternion of doubles divided by its norm, as exact fractions."""
+    """Return a quaternion of four doubles divided by its norm, as fractions; the norm is then 1 to 2^-200."""
     q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
     return q0, q1, q2, q3
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value of a column for the planner: zero if all values are zero, otherwise a nonzero value."""
+    """Return one value of a column that stands for all of them in a plan.
+
+    It is zero if all values are zero, otherwise one that is not zero: a plan makes use of zeros.
+    """
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -399,7 +419,10 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def constant_places(scene: Scene) -> dict[str, Place]:
-    """Return, for each constant that may vary in a scene, its place there, by the name of the constant in the plan."""
+    """Return the places of all constants that may vary in a scene, as a dict by the constant's name in the plan.
+
+    Examples of names are ``I_xx``, ``weight`` and ``torque2_stiffness``.
+    """
     places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
         if isinstance(torque, FormulaTorque):
@@ -413,7 +436,11 @@ def constant_places(scene: Scene) -> dict[str, Place]:
 
 
 def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLike) -> dict[str, Floats]:
-    """Return the columns of values that one entry of ``parameters`` describes, by the name of the constant."""
+    """Return the columns (one value per trajectory) that the entry ``name: values`` of ``parameters`` describes.
+
+    The result is a dict by the name of the constant: ``center_of_mass`` gives the columns ``center_of_mass_1``, ``_2``
+    and ``_3``. ``places`` are the scene's :func:`constant_places`.
+    """
     if name == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
@@ -448,5 +475,8 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
 
 
 def _field(key: str, place: Place) -> str:
-    """Return the name in ``parameters`` for the whole field that contains the constant ``key``."""
+    """Return the name of the field that contains a constant: ``center_of_mass`` for ``center_of_mass_3``.
+
+    A constant that is no component of a vector is its own field. ``place`` is the place of the constant ``key``.
+    """
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

@@ -37,7 +37,7 @@ FRAMES = {
 class Labelled(NamedTuple):
     """One quantity of a trajectory with its labels: name, components, unit, frame and meaning.
 
-    ``values`` has the shape (n,) or (n, ...) for n samples.
+    Tables and files are made of these. ``values`` has the shape (n,) or (n, ...) for n samples.
     """
 
     name: str
@@ -56,7 +56,7 @@ def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
 
 
 class About(NamedTuple):
-    """The origin of a result: the scene by name, its title and source, the method and the tolerance."""
+    """Where a result comes from: the scene (name, title, source), the method and the tolerance; printed with tables."""
 
     scene: str
     title: str
@@ -66,13 +66,16 @@ class About(NamedTuple):
 
 
 def about(trajectory: Any) -> About:
-    """Return the scene, the method and the tolerance with which a trajectory was computed."""
+    """Return where a trajectory comes from: its scene, and the method and tolerance with which it was computed."""
     scene = trajectory.scene
     return About(scene.name, scene.title, scene.source, trajectory.method, trajectory.tolerance)
 
 
 def event_array(number: int, quantity: str) -> str:
-    """Return the name of the array in a file that holds a quantity at the times of one event; events count from 1."""
+    """Return the name, in an NPZ file, of the array of a quantity at the times of one event.
+
+    Events are numbered from 1: ``event_array(2, "omega")`` is ``"event_2_omega"``.
+    """
     return f"event_{number}_{quantity}"
 
 
@@ -110,6 +113,10 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
 
 
 def _derivatives(trajectory: Any) -> dict[str, Labelled]:
-    """Return the labelled derivatives of a trajectory by initial values and constants, by name; empty without them."""
+    """Return the labelled derivatives of a trajectory by initial values and constants, as a dict by name.
+
+    A name is ``"omega_by_weight"``, for example. The dict is empty if the trajectory was computed without
+    sensitivities.
+    """
     sensitivities = getattr(trajectory, "sensitivities", None)
     return {} if sensitivities is None else {item.name: item for item in sensitivities._labelled()}

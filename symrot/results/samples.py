@@ -39,12 +39,15 @@ class Samples(ABC):
 
     @abstractmethod
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+
+        The default (None) is the output quantities of the scene.
+        """
 
     @property
     @abstractmethod
     def _about(self) -> About:
-        """The origin of the samples: scene, method and tolerance."""
+        """Where the samples come from: scene, method and tolerance; tables carry it as attributes."""
 
     @cached_property
     def dcm(self) -> Floats:
@@ -176,16 +179,19 @@ class MotionSamples(Samples):
         return self.dcm[..., self.axis_number]
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the named quantities with their labels; default: the output quantities of the scene."""
+        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+
+        The default (None) is the output quantities of the scene.
+        """
         return labelled(self, quantities)
 
     @property
     def _about(self) -> About:
-        """The origin of the samples: scene, method and tolerance."""
+        """Where the samples come from: scene, method and tolerance; tables carry it as attributes."""
         return about(self)
 
     def quantity(self, name: str) -> Floats:
-        """Return a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
+        """Return the samples of a quantity by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
         if name == "euler":
             output = self.scene.output
             if output.sequence is None:

@@ -113,11 +113,14 @@ class SavedTrajectory(Samples):
 
     @property
     def _about(self) -> About:
-        """The origin of the samples: scene, method and tolerance."""
+        """Where the samples come from: scene, method and tolerance, as the file says; tables carry it as attributes."""
         return About(*(self.metadata[name] for name in About._fields))
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the named quantities with their labels; default: all quantities in the file."""
+        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+
+        The default (None) is all quantities in the file.
+        """
         if quantities is None:
             return list(self._items.values())
         names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
@@ -184,9 +187,11 @@ def _saved(content: Any) -> SavedTrajectory:
 
 
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
-    """Return the quantities in a file with their labels; raise ValueError if an array has an unexpected shape.
+    """Return the quantities in an NPZ file with their labels.
 
-    ``metadata`` describes the arrays, and ``array`` returns the array of a name.
+    ``content`` is the opened file, and ``metadata`` describes its arrays. ``array(name)`` returns the name of the array
+    that holds the quantity ``name``: the samples, or those at an event. An array of an unexpected shape raises
+    ValueError.
     """
     items = []
     for name, entry in metadata["arrays"].items():

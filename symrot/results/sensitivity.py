@@ -99,7 +99,10 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
     @property
     def record(self) -> dict[str, Any]:
-        """The variables as data for JSON, which a file of samples contains: names, units and requested groups."""
+        """The names and units of the variables and the requested groups, as data for JSON.
+
+        A file of samples contains this record; :func:`restored` reads it.
+        """
         return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
 
     def _labelled(self) -> list[Labelled]:
@@ -115,14 +118,21 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def _per(unit: str, other: str) -> str:
-    """Return the unit of a quotient; an unknown unit is named in words."""
+    """Return the unit of a derivative: ``unit``, of the quantity, divided by ``other``, of the variable.
+
+    If ``other`` is empty (unknown), the result ends in words: "(rad/s) per unit of the parameter".
+    """
     if other == "1":
         return unit
     return f"({unit})/({other})" if other else f"({unit}) per unit of the parameter"
 
 
 def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensitivities | None:
-    """Return the derivatives in a file from its record of them and its arrays; None if an array was not written."""
+    """Return the derivatives of a motion that was read from a file, rebuilt from the file's record and its arrays.
+
+    ``record`` is what :meth:`Sensitivities.record` wrote, and ``items`` are the labelled arrays by name. The result is
+    None if one of the derivatives is not in the file.
+    """
     variables = [str(variable) for variable in record["variables"]]
     if not all(f"{quantity}{BY}{variable}" in items for quantity in OUTPUTS for variable in variables):
         return None

@@ -27,7 +27,7 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude as a unit quaternion and as the matrix ``dcm_sb``.
+    """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``.
 
     The matrix is exact if the sines and cosines of the angles in the scene are rational.
     """
@@ -43,13 +43,13 @@ def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
 
 
 def to_space(dcm: Matrix, vector_b: Vector) -> Vector:
-    """Return the space components of a vector that is given in body components."""
+    """Return the space components of ``vector_b``, given in body components; ``dcm`` is the attitude ``dcm_sb``."""
     x, y, z = (sum(map(Fraction.__mul__, row, vector_b), Fraction(0)) for row in dcm)
     return x, y, z
 
 
 def to_body(dcm: Matrix, vector_s: Vector) -> Vector:
-    """Return the body components of a vector that is given in space components."""
+    """Return the body components of ``vector_s``, given in space components; ``dcm`` is the attitude ``dcm_sb``."""
     return to_space(tuple(zip(*dcm, strict=True)), vector_s)  # type: ignore[arg-type]
 
 
@@ -74,7 +74,7 @@ def _dcm(q: Quaternion) -> Matrix:
 
 
 def _about(axis: Vector, angle: Angle) -> Attitude:
-    """Return the attitude after a rotation by an angle about an axis of any length (Rodrigues' formula)."""
+    """Return the attitude after a rotation by ``angle`` about ``axis``, of any length (Rodrigues' formula)."""
     x, y, z = axis
     square = x * x + y * y + z * z
     length = sqrt(square)
@@ -104,7 +104,10 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude that a matrix in a scene describes.
+    """Return the attitude that a matrix ``dcm_sb`` in a scene describes.
+
+    ``rows`` are its exact entries, ``value`` is the text of the scene and ``where`` its place, for errors: the rows
+    must be orthonormal to 1e-9 and right-handed.
 
     The quaternion is computed without loss of digits (Shepperd's method); the matrix of the result is the exact matrix
     of this quaternion.
@@ -147,7 +150,10 @@ def _four(value: Any, where: str) -> Quaternion:
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
-    """Return the attitude that a quaternion (q0, q1, q2, q3) in a scene describes; it must not be zero."""
+    """Return the attitude that a quaternion ``value`` = [q0, q1, q2, q3] in a scene describes, of any norm except zero.
+
+    Another value raises InputError, which names the place ``where``.
+    """
     q = _four(value, where)
     return Attitude(_unit(q), _dcm(q))
 
@@ -161,7 +167,7 @@ def _rows(value: Any, where: str) -> Matrix:
 
 
 def refuse_two(attitude: Any, quaternion: Any) -> None:
-    """Raise InputError if a call gives both an attitude and a quaternion, that is, if neither argument is None."""
+    """Raise InputError if neither argument is None: a call may give an attitude or a quaternion, not both."""
     if attitude is not None and quaternion is not None:
         raise InputError(f"attitude: expected either attitude or quaternion, got both (attitude is {show(attitude)})")
 
@@ -247,10 +253,11 @@ def _by_shape(value: Any) -> Any:
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that a scene describes: quaternion, Euler angles, axis and angle, or matrix.
+    """Return the attitude that ``value`` in a scene describes: quaternion, Euler angles, axis and angle, or matrix.
 
-    The value is a table, or one of the lists ``[q0, q1, q2, q3]``, ``[[..], [..], [..]]`` (the rows of ``dcm_sb``) and
-    ``["ZXZ", [.., .., ..]]`` (angles in rad).
+    The value is a table, such as ``{axis = [0, 0, 1], angle = 0.5}``, or one of the lists ``[q0, q1, q2, q3]``,
+    ``[[..], [..], [..]]`` (the rows of ``dcm_sb``) and ``["ZXZ", [.., .., ..]]`` (angles in rad). Another value raises
+    InputError, which names the place ``where``.
     """
     entries = table(_by_shape(value), where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)

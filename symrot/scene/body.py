@@ -121,7 +121,10 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return an inertia tensor with products of inertia replaced by zero where they are only rounding errors."""
+    """Return an inertia tensor in which products of inertia that are only rounding errors are replaced by zero.
+
+    A body given by decimals then counts as given along its principal axes if it was meant so.
+    """
     limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
@@ -161,7 +164,10 @@ _entry = number("an entry of an inertia tensor in kg m^2")
 
 
 def _rows_of_tensor(value: Any, where: str) -> Matrix:
-    """Return an inertia tensor given by three rows; entries ij and ji that differ by rounding become their mean."""
+    """Return the inertia tensor that ``value``, three rows in a scene, gives.
+
+    Entries ij and ji that differ only by rounding become their mean; other differences raise InputError.
+    """
     if len(value) != 3 or not all(isinstance(row, list | tuple) and len(row) == 3 for row in value):
         fail(where, "three rows of three numbers in kg m^2, products with their minus sign", value)
     rows = [[_entry(item, f"{where}[{i}][{j}]") for j, item in enumerate(row)] for i, row in enumerate(value)]
@@ -189,9 +195,10 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return the body whose inertia tensor a scene gives directly, about the point of rotation.
+    """Return the body whose inertia tensor, about the point of rotation, a scene gives directly.
 
-    ``values`` holds its mass, name, point of rotation and centre of mass.
+    ``values`` holds its mass, name, point of rotation and centre of mass; ``where`` is its place, for errors. The
+    description of the body is "NAME with ``source``", such as "rotor with given principal moments".
     """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
@@ -240,9 +247,9 @@ def _any_value(value: Any, where: str) -> Any:
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
-    """Return the rules for reading the keys ``mass`` and ``density`` of a shape.
+    """Return the rules by which the keys ``mass`` and ``density`` of a shape's table are read.
 
-    The shape ``point_masses`` has neither key, since each point has its own mass.
+    The shape ``point_masses`` has neither key, since each point has its own mass; the result is then empty.
     """
     if shape.kind == "points":
         return {}
@@ -253,7 +260,10 @@ def _amount(shape: Shape) -> dict[str, Entry]:
 
 
 def _density(unit: str) -> Reader:
-    """Return a reader for densities: a positive number, or a polynomial in x, y, z, which is returned as text."""
+    """Return a reader for densities in ``unit``: a positive number, or a polynomial in x, y, z.
+
+    The reader returns a number as a Fraction, a polynomial as its text.
+    """
     uniform = number(f"a density in {unit}", "positive")
 
     def reader(value: Any, where: str) -> Any:
@@ -314,16 +324,20 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
-    """Return a body composed of shapes, with its inertia about its centre of mass or about the fixed point.
+    """Return the body composed of ``parts``, with its inertia about its centre of mass or about the fixed point.
 
-    ``source`` describes the body; ``where`` and ``of_parts`` are the places of the body and of its shapes in the scene,
-    for error messages.
+    ``values`` says about which of these points the body rotates. ``source`` describes the body; ``where`` and
+    ``of_parts`` are the places of the body and of its shapes in the scene, for error messages.
     """
     return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body with given mass properties, about its centre of mass or about the fixed point."""
+    """Return a body with the given mass properties, with its inertia about the point of rotation.
+
+    ``values`` says whether this is the centre of mass or the ``fixed_point``; a contradiction raises InputError, which
+    names the place ``where``. ``source`` describes the body.
+    """
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
         fail(

@@ -57,14 +57,17 @@ _PREFIXED = re.compile(r"torque(\d{1,4})_(\w+)")
 
 
 class Place(NamedTuple):
-    """The place of a value in the content of a scene: its path, and an index from 0 if it is one number of a vector."""
+    """The place of a value in the content of a scene: its path, and an index from 0 if it is one number of a vector.
+
+    Example: ``omega_2`` is ``(("initial", "omega"), 1)``.
+    """
 
     path: Path
     component: int | None = None
 
 
 class _Scene(NamedTuple):
-    """The content of a scene to be changed, and the exact values that were read from this content."""
+    """What :func:`changed` works on: the content of a scene, and the exact values that were read from this content."""
 
     content: Content
     omega_b: Sequence[Fraction]
@@ -210,9 +213,10 @@ def path_of(key: str) -> Path:
 
 
 def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
-    """Yield the place of each torque constant that a key names, in the order of the torques.
+    """Yield the place of each torque constant that ``key`` names, in the order of the torques.
 
-    ``torque2_weight`` names a constant of the second torque; ``weight`` may name constants of several torques.
+    ``torque2_weight`` names a constant of the second torque only; ``weight`` names one in each torque that has a
+    weight.
     """
     prefixed = _PREFIXED.fullmatch(key)
     candidates = [(int(prefixed[1]) - 1, prefixed[2])] if prefixed else [(k, key) for k in range(_count(scene))]
@@ -254,7 +258,7 @@ def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
 
 
 def _names(scene: _Scene) -> list[str]:
-    """Return the short names of the constants of torques and of the body's dimensions, for an error message."""
+    """Return the short names of the torques' constants and the body's dimensions, which an error message lists."""
     names: list[str] = []
     for torque in scene.content.get("torque", ()):
         if torque["kind"] == "expression":
@@ -273,7 +277,10 @@ def _text(place: Place) -> str:
 
 
 def _table(content: Content, path: Path, key: str) -> Any:
-    """Return the table or list at a path; a missing table is added."""
+    """Return the table or list at a path of the content; missing tables on the way are added.
+
+    ``key`` is the user's name of the value, for the message if the path leads through a number or beyond a list.
+    """
     place: Any = content
     for depth, step in enumerate(path):
         if isinstance(step, int):
@@ -310,7 +317,11 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
 
 
 def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
-    """Set the principal moments or one entry of the inertia tensor; mass and centre of mass stay the same."""
+    """Set the principal moments, or one entry of the inertia tensor, in the content of the scene.
+
+    ``key`` is ``principal`` or one of ``I_xx`` to ``I_yz``. Mass and centre of mass stay the same; a body given by
+    shapes is then given by its moments. With products of inertia, ``principal`` raises InputError.
+    """
     if key == "principal":
         if not scene.body.principal.given_axes:
             raise InputError(
@@ -327,7 +338,10 @@ def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _moments(scene: _Scene, inertia: Content) -> Content:
-    """Return the table ``[body]`` of the scene's body, given by the moments ``inertia`` instead of by its shapes."""
+    """Return a table ``[body]`` that gives the scene's body by the entries ``inertia`` instead of by its shapes.
+
+    ``inertia`` holds ``principal`` or ``inertia``; name, mass and centre of mass are those of the present body.
+    """
     body, content = scene.body, scene.content["body"]
     moments: Content = {**inertia, "about": body.about, "name": content.get("name", "")}
     if body.mass is not None:

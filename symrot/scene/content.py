@@ -25,6 +25,8 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 def plain(value: Any, where: str, depth: int = 0) -> Any:
     """Convert a Python value to the form of a scene file: an array to a list, a rotation of SciPy to a quaternion.
 
+    ``where`` is the place of the value, for errors; ``depth`` counts the tables and lists around it.
+
     Raises
     ------
     InputError

@@ -10,7 +10,7 @@ __all__ = ["Folders"]
 
 
 class Folders(NamedTuple):
-    """The folder of a scene, and further folders whose files the scene may name."""
+    """The folder of a scene, and further folders that the user allows; a scene may name only files in these folders."""
 
     folder: Path = Path()
     others: str | Path | Sequence[str | Path] = ()

@@ -18,7 +18,7 @@ MOST_FACETS = 5000
 
 
 class MeshProperties(NamedTuple):
-    """The mass properties of a mesh, and its triangles, m, for pictures.
+    """The mass properties of a mesh, and the corners, m, of its triangles, for pictures.
 
     The list of triangles is empty for a mesh of more than MOST_FACETS triangles.
     """
@@ -30,7 +30,7 @@ class MeshProperties(NamedTuple):
 def read_mesh_table(
     value: Mapping[str, Any], where: str, others: Mapping[str, Entry], density: Entry, folders: Folders
 ) -> tuple[MeshProperties, dict[str, Any]]:
-    """Return the mass properties of the mesh that a table with the key ``mesh`` names, and the values of the table.
+    """Return the mass properties of the mesh that a table with the key ``mesh`` names, and all values of the table.
 
     Parameters
     ----------

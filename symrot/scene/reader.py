@@ -34,7 +34,7 @@ LARGEST = Fraction(10) ** 100
 
 
 class Entry(NamedTuple):
-    """The rules for one key of a table: its reader, whether the key is required, and its default value."""
+    """The rules for one key of a table: the function that reads its value, whether it is required, and its default."""
 
     read: Reader
     required: bool = False
@@ -48,7 +48,10 @@ def key_path(where: str, key: str) -> str:
 
 
 def fail(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
-    """Raise InputError with the sentence "where: expected .., got .. (reason)"."""
+    """Raise InputError with the sentence "where: expected .., got .. (reason)".
+
+    Without ``value`` the part "got .." is left out, without ``reason`` the part in brackets.
+    """
     place = where.removesuffix(": ")
     got = "" if value is ... else f", got {show(value)}"
     raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
@@ -81,9 +84,10 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
-    """Return a reader for numbers; ``sign`` is "any", "positive" or "nonnegative".
+    """Return a reader that accepts numbers and returns them as Fractions.
 
-    The text ``expectation``, for error messages, begins with "a ".
+    ``sign`` is "any", "positive" or "nonnegative". The text ``expectation``, such as "a mass in kg", goes into error
+    messages; it begins with "a ".
     """
     expected_number = {
         "any": expectation,
@@ -103,9 +107,9 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
 
 
 def vector(unit: str, sign: str = "any") -> Reader:
-    """Return a reader for lists of three numbers; ``sign`` is "any", "nonzero" or "nonnegative".
+    """Return a reader that accepts lists of three numbers in ``unit`` and returns them as three Fractions.
 
-    With "nonzero" only the zero vector is refused; "nonnegative" applies to each component.
+    ``sign`` is "any", "nonzero" (only the zero vector is refused) or "nonnegative" (each component).
     """
     expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
     component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
@@ -139,7 +143,7 @@ def flag(value: Any, where: str) -> bool:
 
 
 def choice(*options: str) -> Reader:
-    """Return a reader that accepts each of the given words and refuses all other values."""
+    """Return a reader that accepts each of the words ``options`` and refuses all other values with InputError."""
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:

@@ -66,7 +66,10 @@ _moment = vector("N m")
 
 
 def _plain(value: Any) -> bool:
-    """Return whether a value is a finite float of ordinary size (or 0.0), which needs no further check."""
+    """Return whether a value is a finite float of ordinary size (or 0.0), so that it needs no further check.
+
+    A table of many samples is read faster in this way.
+    """
     return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
 
 

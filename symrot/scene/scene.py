@@ -241,7 +241,10 @@ class Scene:
         return _read_scene(content, self.origin.label, self.name, self.path, self.origin.table_folders)
 
     def _content(self) -> Content:
-        """Return the content of the scene; raise InputError if its body or torques were replaced after it was read."""
+        """Return the present content of the scene file, from which the scene could be read again.
+
+        If the body or the torques were replaced after reading, raise InputError: they cannot be written back.
+        """
         if self.origin is None or not all(
             one is other for one, other in zip(self.origin.parts, _parts(self), strict=True)
         ):
@@ -255,9 +258,9 @@ class Scene:
 
 
 class _Origin(NamedTuple):
-    """The content from which a scene was read, and the objects made from it.
+    """The content from which a scene was read, and the objects (body, torques, ..) that were made from it.
 
-    Comparing these objects with the scene's present ones shows which of them were replaced later.
+    :meth:`Scene.to_dict` compares these objects with the scene's present ones, to see which were replaced later.
     """
 
     content: Content
@@ -267,7 +270,10 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether body and torques of a scene are still those read from its content: none was replaced."""
+        """Return whether the body and torques of ``scene`` are still those read from this content.
+
+        They are not if ``dataclasses.replace`` put others in their place.
+        """
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
@@ -277,7 +283,10 @@ def _parts(scene: Scene) -> tuple[Any, ...]:
 
 
 def _values(scene: Scene) -> dict[str, Any]:
-    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file."""
+    """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file.
+
+    If one of them was replaced after reading, :meth:`Scene.to_dict` writes the new value.
+    """
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,
         "output": scene.output, "accuracy": scene.tolerance,

@@ -12,7 +12,9 @@ SET_HELP = "another value in the scene, written as in its file: body.mass=2, ome
 
 
 def settings(texts: Sequence[str]) -> dict[str, Any]:
-    """Return the values of ``--set`` by key; a text that is no TOML value, such as ``1/3``, stays a text.
+    """Return the values that the texts of ``--set KEY=VALUE`` give, as a dict by key.
+
+    A value is read as TOML; a text that is no TOML value, such as ``1/3``, stays a text.
 
     Raises
     ------

@@ -105,7 +105,10 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 
 def _depth(node: expression.Node) -> int:
-    """Return the depth of a formula tree, computed without recursion, since the tree of a long sum is very deep."""
+    """Return the depth of a formula tree: the largest number of nodes from the root to a leaf.
+
+    It is computed without recursion, since the tree of a long sum is very deep; formulas that are too deep are refused.
+    """
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]

@@ -57,13 +57,13 @@ def normalized(high: Any, low: Any) -> Pair:
 
 
 def add(a: Pair, b: Pair) -> Pair:
-    """Return the sum of two double-double numbers, with an error of 2^-104 times the larger number."""
+    """Return the sum of two double-double numbers, with an error of 2^-104 times the larger number (in size)."""
     total, error = two_sum(a[0], b[0])
     return normalized(total, error + (a[1] + b[1]))
 
 
 def subtract(a: Pair, b: Pair) -> Pair:
-    """Return the difference of two double-double numbers, with an error of 2^-104 times the larger number."""
+    """Return the difference a - b of double-double numbers, with an error of 2^-104 times the larger of |a| and |b|."""
     return add(a, (-b[0], -b[1]))
 
 
@@ -92,7 +92,7 @@ def square_root(a: Pair) -> Pair:
 
 @cache
 def ln2(bits: int) -> Fraction:
-    """Return ln 2 with an absolute error below 2^-bits, as the sum of 2/((2 k + 1) 3^(2 k + 1))."""
+    """Return ln 2 as a fraction with an absolute error below 2^-bits: the sum over k of 2/((2 k + 1) 3^(2 k + 1))."""
     total, power, k = 0, (2 << (bits + 16)) // 3, 0
     while power:
         total += power // (2 * k + 1)

@@ -11,7 +11,10 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
-    """Return the unit quaternion of a proper rotation matrix, computed without loss of digits (Shepperd's method)."""
+    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows.
+
+    The formula divides by the largest component of the quaternion (Shepperd's method), so that no digits are lost.
+    """
     trace = r[0][0] + r[1][1] + r[2][2]
     candidates = (
         (1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]),
@@ -23,7 +26,7 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation matrix whose third column is the unit vector along ``direction``.
+    """Return a rotation matrix, to 30 digits, whose third column is the unit vector along ``direction``, of any length.
 
     If ``direction`` lies along the third axis, the matrix contains only 0, 1 and -1.
     """

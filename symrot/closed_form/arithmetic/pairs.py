@@ -38,9 +38,10 @@ _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
-    """Return two doubles (hi, lo) whose sum approximates numerator/denominator.
+    """Return two doubles (hi, lo) whose sum approximates numerator/denominator to 31 digits.
 
-    Both doubles are correctly rounded, because Python rounds quotients of integers correctly.
+    hi is the rounded quotient, and lo the rounded remainder numerator/denominator - hi. Both are correctly rounded,
+    because Python rounds quotients of integers correctly. Example: 1 and 3 give about (0.333, 1.85e-17).
     """
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
@@ -49,7 +50,7 @@ def quotient(numerator: int, denominator: int) -> tuple[float, float]:
 
 
 def pair(value: Number) -> tuple[float, float]:
-    """Return two doubles (hi, lo) whose sum approximates a number."""
+    """Return two doubles (hi, lo) whose sum approximates a number to 31 digits; for a float, lo is zero."""
     return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
 
 
@@ -89,12 +90,18 @@ def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers agree to a relative difference of 2^-200."""
+    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size.
+
+    It decides, for example, whether a body is symmetric. Two floats count as equal only if they are identical.
+    """
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
 def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
-    """Return the integer numerators of some numbers over one common denominator, and this denominator."""
+    """Return the integer numerators of some numbers over one common denominator, and this denominator.
+
+    Example: 1/2 and 1/3 give ``[3, 2]`` and 6.
+    """
     ratios = [value.as_integer_ratio() for value in values]
     shared = ratios[0][1]
     if {bottom for _, bottom in ratios} == {shared}:
@@ -136,7 +143,11 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a fraction is certainly within the bounds of :func:`numbers`, by a quick look at bit lengths."""
+    """Return whether a fraction is certainly within the bounds ``least`` and LARGEST of :func:`numbers`.
+
+    Only the bit lengths of numerator and denominator are compared, which is fast. If the result is False, the caller
+    must compare exactly.
+    """
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

@@ -41,7 +41,7 @@ _TERMS = 20  # terms of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1; the nex
 
 
 def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
-    """Return exp(x) and exp(x) - 1, rounded to doubles, for double-double numbers x = high + low."""
+    """Return exp(x) and exp(x) - 1 of double-double numbers x = high + low, both rounded to doubles."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low
 
@@ -93,7 +93,7 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return the angle at each time t, s, in revolutions, reduced to the range from -1/2 to 1/2."""
+        """Return ``share`` times the angle of rotation at each time t, s, in revolutions, reduced to -1/2 to 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t
@@ -165,7 +165,10 @@ class Turning:
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return the angle at one time, in revolutions from -1/2 to 1/2, computed in integers."""
+        """Return ``share`` times the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers.
+
+        This path serves angles above 1e10 revolutions, and calls with only a few times.
+        """
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms
         if growth > _GROWN:
@@ -183,7 +186,10 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) for a fixed-point integer x; x and the result have ``bits`` bits after the binary point."""
+    """Return exp(x) of a fixed-point number: x and the result are integers with ``bits`` bits after the binary point.
+
+    ``octave`` is ln 2 in the same form; x is first reduced by multiples of it.
+    """
     if x < -bits << bits:
         return 0
     octaves, rest = divmod(x << _GUARD, octave)

@@ -58,7 +58,7 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """The constants of one motion, and the compiled loop that computes its samples."""
+    """One motion about one axis: its constants for the C struct `axial`, and the compiled loop for its samples."""
 
     evaluate: Any
     constants: Any
@@ -81,7 +81,7 @@ def available() -> bool:
 
 
 def functions() -> tuple[Any, Any]:
-    """Return the compiled loop over samples, and the ctypes type of the constants that it reads.
+    """Return the compiled loop of :file:`axial_at.c` over samples, and the ctypes type of the constants that it reads.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """The constants of a body driven about one axis; a call with an initial state returns :class:`Loops`.
+    """The constants of a body driven about one axis; a call with an initial state returns a motion's :class:`Loops`.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Convert top/bottom rad to revolutions: an integer, and its number of bits after the binary point."""
+    """Convert the angle top/bottom rad to revolutions: an integer, and its number of bits after the binary point."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits

@@ -34,7 +34,10 @@ __all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
-    """The motion of one body driven and damped about one axis. Times, s, are counted from the initial state."""
+    """The motion of one body driven and damped about one axis, from one initial state.
+
+    Times, s, are counted from this state.
+    """
 
     regime = "steady"  # elementary functions only, see symrot.closed_form.motion.REGIMES
 
@@ -170,16 +173,17 @@ def motion(
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
-    """Return a function that takes an initial state and returns the motion of one driven body from it.
+    """Return a function from an initial state to the motion of one driven body.
 
-    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
+    The arguments describe the body and its torque, as for :func:`motion`. The constants that do not depend on the
+    initial state are computed once, when this function is called.
     """
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
 
 
 class Driven:
-    """A body driven about one axis, with the exact constants that all its motions share."""
+    """A body driven about one axis, with the exact constants that its motions from all initial states share."""
 
     def __init__(
         self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
@@ -228,7 +232,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the attitude q after a further rotation by 180 degrees about a body axis, as a quaternion."""
+    """Return, as a quaternion, the attitude q followed by a half turn about the body axis ``axis`` (0, 1 or 2)."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

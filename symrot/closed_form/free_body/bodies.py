@@ -130,7 +130,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return a few doubles whose sum approximates a fraction, and whether the sum equals the fraction."""
+    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly."""
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

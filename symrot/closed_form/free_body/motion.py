@@ -67,17 +67,21 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function that takes an initial state and returns the motion of one free body in any body axes.
+    """Return a function from an initial state to the motion of one free body, in any body axes.
 
-    Angular velocity and attitude refer to the given axes. The principal axes are known to 110 digits; the constants of
-    the motion are computed from them before they are rounded to doubles.
+    ``principal`` holds the body's principal moments and axes, known to 110 digits. The initial state and the samples
+    refer to the axes in which the body was given. The constants of the motion are computed before anything is rounded
+    to doubles.
     """
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class FreeRigidBody:
-    """A free body with the constants that all its motions share: moments, their differences, and principal axes."""
+    """A free body with the constants that all its motions share, whatever the initial state.
+
+    They are its principal moments, their differences, and its principal axes.
+    """
 
     def __init__(self, body: Principal) -> None:
         integers, shared = over_common_denominator(body.moments)

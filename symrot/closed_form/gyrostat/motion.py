@@ -45,16 +45,19 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
-    """Return a function that takes an initial state and returns the motion of one gyrostat from it.
+    """Return a function from an initial state to the motion of one gyrostat (a body with a rotor).
 
-    The arguments are as for :func:`motion`.
+    ``inertia`` and ``rotor`` are as for :func:`motion`.
     """
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Gyrostat:
-    """A symmetric body with a rotor along its axis, with the constants that all its motions share."""
+    """A symmetric body with a rotor along its axis, with the constants that all its motions share.
+
+    They do not depend on the initial state.
+    """
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)

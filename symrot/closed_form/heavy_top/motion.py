@@ -77,18 +77,20 @@ def motion(
 def starts(
     inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number] = _DOWN
 ) -> Callable[[Initial], ExactMotion]:
-    """Return a function that takes an initial state and returns the motion of one heavy top from it.
+    """Return a function from an initial state to the motion of one heavy top.
 
-    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
+    The arguments describe the body and its weight, as for :func:`motion`. The constants that do not depend on the
+    initial state are computed once, when this function is called.
     """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A symmetric heavy top with the constants that all its motions share.
+    """A symmetric heavy top with the constants that its motions from all initial states share.
 
-    They are the moments of inertia, the weight times the distance of the centre of mass from the fixed point, and axes.
+    They are the moments of inertia, the weight times the distance of the centre of mass from the fixed point, and the
+    axes in which the formulas hold (:class:`Frame`).
     """
 
     def __init__(
@@ -163,7 +165,10 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether these axes are the same as the axes of the scene, so that attitudes need no conversion."""
+        """Whether the axes of the formulas are those of the scene, so that attitudes need no conversion.
+
+        This is so if the body's third axis is the symmetry axis and ``up`` is the direction of z.
+        """
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:

@@ -247,7 +247,12 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2."""
+    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2.
+
+    The formulas hold for an order of the moments that depends on the sign of the defect. ``moments`` and ``w`` are the
+    moments and the initial angular velocity along the principal axes; ``differences`` and ``defect`` are the results of
+    :func:`_differences`.
+    """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

@@ -32,7 +32,10 @@ def vector(pairs: list[float]) -> list[Any]:
 
 
 def power_of_two(value: Any) -> Any:
-    """Return a power of two near a positive number, or 1 for zero; dividing by it scales numbers without rounding."""
+    """Return a power of two near a positive number, or 1 for zero.
+
+    Dividing by it scales numbers without rounding.
+    """
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 
@@ -72,14 +75,17 @@ class Phase(NamedTuple):
         return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
-        """Return the phase including whole revolutions, for functions that are not periodic."""
+        """Return the phase at the times ``t``, in revolutions, not reduced modulo 1.
+
+        It is for functions that are not periodic.
+        """
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
         phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
         return phase
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the sine and the cosine of the phase plus ``more`` revolutions."""
+        """Return sine and cosine, at the times ``t``, of the phase plus ``more`` (both in revolutions)."""
         rest, quarters = self.rest(t, 4, more)
         sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
         quarter = quarters.astype(np.int64) & 3
@@ -107,7 +113,7 @@ class Phase(NamedTuple):
 
 
 def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-    """Return the real and the imaginary part of a complex number times ``cosine + i sine``."""
+    """Return the real and the imaginary part of ``(real + i imaginary) * (cosine + i sine)``."""
     return real * cosine - imaginary * sine, real * sine + imaginary * cosine
 
 
@@ -122,7 +128,10 @@ def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
-    """Return (sine, cosine) of 0, 1, 2, .. times an angle, given its sine and cosine, for all terms of a series."""
+    """Return the pairs (sine, cosine) of 0, 1, 2, .. times an angle, given its sine and cosine.
+
+    There are as many pairs as the terms of a theta series need. The angle is an array, one for each time.
+    """
     pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
         s, c = pairs[-1]

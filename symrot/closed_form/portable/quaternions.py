@@ -50,5 +50,8 @@ class Axes:
 
 
 def mapping(images: Sequence[Sequence[Any]]) -> Floats:
-    """Return the matrix that maps the basis vectors to ``images``, which are its columns, as an array of doubles."""
+    """Return the matrix whose columns are ``images``, as an array of doubles.
+
+    It maps basis vector k to ``images[k]``.
+    """
     return np.array([[float(x) for x in image] for image in images]).T

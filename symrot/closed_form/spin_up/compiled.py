@@ -32,7 +32,10 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the limits that the C function ``symrot_spin_up_prepare`` takes: NEAR, WIDE and MOST of series.py."""
+    """Return the three limits that the C function ``symrot_spin_up_prepare`` takes as an argument.
+
+    They are NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, which say where each series is accurate.
+    """
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -42,7 +45,7 @@ def available() -> bool:
 
 
 def functions() -> _Functions:
-    """Return the compiled functions for driven symmetric bodies, with the ctypes types of their arguments.
+    """Return the compiled functions of :file:`spin_up.c` and :file:`spin_up_at.c`, and ctypes types of their arguments.
 
     Raises
     ------

@@ -41,7 +41,7 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of the values, as a unit for rates; one of them must not be zero."""
+    """Return a power of two near the largest of the values, in which rates are measured; one value must not be zero."""
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
@@ -129,7 +129,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """The rotation of the body from the start to resonance (Omega = 0)."""
+        """The rotation of the body from the start to resonance (Omega = 0), as a quaternion of integers."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -203,7 +203,10 @@ class Integers:
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
-        """Return whether the angular velocity at a time, s, is within the range of doubles."""
+        """Return whether the angular velocity at ``time``, s, is within the range of doubles.
+
+        A sample outside this range is an error.
+        """
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:

@@ -63,7 +63,7 @@ class SpinUp:
 
     @cached_property
     def integers(self) -> "Integers":
-        """The same motion in integer arithmetic, for samples with very many revolutions."""
+        """The same motion in integer arithmetic, for samples beyond 1e13 rad, or without a C compiler."""
         from symrot.closed_form.spin_up.integers import Integers
 
         body, rates, attitude = self._initial_state
@@ -128,16 +128,20 @@ def motion(
 
 
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
-    """Return a function that takes an initial state and returns the motion of one driven body from it.
+    """Return a function from an initial state to the motion of one driven body.
 
-    The arguments are as for :func:`motion`. Constants that do not depend on the initial state are computed once.
+    The arguments describe the body and its torque, as for :func:`motion`. The constants that do not depend on the
+    initial state are computed once, when this function is called.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class SpunBody:
-    """A symmetric body and its torque, with the constants that all its motions share."""
+    """A symmetric body and the torque about its axis, with the constants that all its motions share.
+
+    They do not depend on the initial state.
+    """
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
