@@ -37,10 +37,11 @@ Groups = Sequence[Sequence[str]]  # inputs that belong together, such as the com
 
 @dataclass(frozen=True)
 class Formulas:
-    """Formulas of outputs (``outputs``), and of the intermediate quantities in them (``named``).
+    """Formulas of a kernel's outputs, and of the intermediate quantities (temporaries) that occur in them.
 
-    Both are pairs of a name and a formula. The intermediate quantities are in the order of computation: a formula may
-    contain the earlier ones.
+    ``outputs`` holds pairs (name of the output, formula), ``named`` pairs (symbol, formula) of the intermediate
+    quantities in the order of computation: each formula may contain the symbols before it. For ``y = sin(s)/s`` with
+    ``s = sqrt(a + b)``: ``outputs = (("y", sin(s)/s),)`` and ``named = ((s, sqrt(a + b)),)``.
     """
 
     outputs: tuple[tuple[str, Expr], ...]
@@ -62,7 +63,10 @@ class Formulas:
 
     @property
     def explicit(self) -> "Formulas":
-        """The same outputs as formulas in the inputs alone: each named quantity is replaced by its formula."""
+        """The same outputs as formulas in the inputs alone.
+
+        Symbols of intermediate quantities are replaced by formulas.
+        """
         outputs = []
         for name, formula in self.outputs:
             for symbol, value in reversed(self.named):
@@ -72,20 +76,23 @@ class Formulas:
 
 
 def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, groups: Groups) -> Iterator[Formulas]:
-    """Yield the formulas of outputs and derivatives, once for each way to compute them.
+    """Yield the formulas of a kernel's outputs and their derivatives, once for each way to compute them.
+
+    All results are equal in exact arithmetic; :func:`cheapest` selects the one with the fewest operations.
 
     Parameters
     ----------
     value : Formulas
-        The outputs.
+        The outputs, without derivatives.
     chained : Formulas
-        The outputs and their derivatives by the chain rule.
+        The outputs and their derivatives by the chain rule. This is the first result.
     base : Program
-        A program for the outputs.
+        A program that computes the outputs alone; its temporaries are differentiated too.
     entries : sequence of (output, input)
-        The derivatives, in the order in which they are printed.
+        Names of the derivatives d(output)/d(input), in the order in which they are printed.
     groups : sequence of sequences of str
-        The inputs, in groups in which the outputs may be linear.
+        Groups of inputs, such as the three components of omega. If an output is linear in a group, as ``a*x + b*y``
+        is in (x, y), a further way computes it from its derivatives a and b.
 
     Notes
     -----
@@ -105,14 +112,22 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
 
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
-    """Return the program with the fewest operations among equal formulas; changes of sign count only in a tie.
+    """Return the program with the fewest operations among programs for equal formulas.
+
+    Changes of sign are not counted; between programs with equal counts, the one with fewer changes of sign is chosen.
 
     Parameters
     ----------
     signature, parameter_argument
-        As for :func:`symrot.codegen.lowering.lower.lower`.
+        Name and arguments of the program, and the name of its argument for constants, as for
+        :func:`symrot.codegen.lowering.lower.lower`.
     formulas : iterable of Formulas
-        The results of :func:`ways`.
+        The results of :func:`ways`, which all describe the same outputs.
+
+    Returns
+    -------
+    Lowered
+        The program and the formulas of its constants.
     """
 
     def cost(lowered: Lowered) -> tuple[int, int]:
@@ -132,7 +147,7 @@ def _entry(output: str, variable: str) -> str:
 
 
 def _explicit(value: Formulas, entries: Entries) -> Formulas:
-    """Return outputs and derivatives, each as one formula in the inputs."""
+    """Return the outputs ``value`` and their derivatives ``entries``, each as one formula in the inputs."""
     formulas = dict(value.outputs)
     slopes = []
     for output, variable in entries:
@@ -147,7 +162,7 @@ def _symbols(formula: Expr) -> Mapping[str, Symbol]:
 
 
 def _single_operations(program: Program) -> Program:
-    """Return the program with one operation in each assignment."""
+    """Return a program for the same outputs in which each assignment has one operation: ``y = a*b + c`` becomes two."""
     names = [name for name, _ in program.outputs]
     tape = tape_of(program, names)
     nodes: list[Node] = []
@@ -165,10 +180,10 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the derivative of a formula by each of its symbols.
+    """Return the partial derivatives of a formula: a mapping from each symbol in it to the derivative by this symbol.
 
-    ``value`` is the symbol y that stands for the formula, if there is one. It saves operations: the derivative of a
-    quotient ``y = a/b`` is then ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is ``a'/(2 y)``.
+    ``value`` is the symbol y of the temporary that holds the formula's value, or None. With y, derivatives need fewer
+    operations: that of a quotient ``y = a/b`` is ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is ``a'/(2 y)``.
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
@@ -219,9 +234,10 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 
 
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
-    """Add a derivative to the intermediate quantities ``named`` under a new symbol, and return the symbol.
+    """Return the derivative ``slope`` as later formulas should contain it.
 
-    A derivative that is a number, a symbol or a number times a symbol is returned unchanged.
+    As a new symbol, or unchanged if it is short. The new symbol, whose name is ``name``, is appended with its formula
+    to the intermediate quantities ``named``. A number, a symbol, or a number times a symbol counts as short.
     """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope
@@ -234,7 +250,11 @@ Linear = dict[str, tuple[tuple[str, Symbol], ...]]  # output -> names of derivat
 
 
 def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Linear:
-    """Return the outputs that are linear in a group of inputs: the sum of the inputs times their derivatives."""
+    """Return the outputs that are linear in a group of inputs, each with pairs (name of the derivative, input).
+
+    Such an output equals the sum of these inputs times these derivatives: for ``f = a*x + b*y`` the pairs are those of
+    a with x and of b with y. An output that is linear in no group is absent.
+    """
     formulas, known, linear = dict(explicit.outputs), set(entries), Linear()
     for output in dict.fromkeys(output for output, _ in entries):
         symbols = _symbols(formulas[output])
@@ -251,9 +271,9 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
 
 
 def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
-    """Return formulas in which outputs that are linear in some inputs are computed from their derivatives.
+    """Return formulas in which each output of ``linear`` is computed from its derivatives, f as the sum of ``x*df/dx``.
 
-    Such an output f is the sum of x times df/dx over these inputs x, and its derivatives are needed anyway.
+    ``linear`` is the result of :func:`_linear_outputs`. The derivatives are outputs anyway, so this saves operations.
     """
     outputs, named = dict(formulas.outputs), list(formulas.named)
     for output, terms in linear.items():

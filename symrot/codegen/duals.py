@@ -13,13 +13,17 @@ __all__ = ["Dual", "dual_functions"]
 
 
 class Dual:
-    """A number and its derivatives, by the names of the variables; a variable that is absent has the derivative 0."""
+    """A number with its derivatives: ``value``, and ``slopes``, which maps names of variables to derivatives by them.
+
+    A variable that is absent in ``slopes`` has the derivative 0. ``Dual(3, {"x": 1})`` is the variable x at 3; its
+    square is ``Dual(9, {"x": 6})``.
+    """
 
     def __init__(self, value: Any, slopes: Mapping[str, Any]) -> None:
         self.value, self.slopes = value, slopes
 
     def _with(self, value: Any, factor: Any) -> "Dual":
-        """Return a number whose derivatives are ``factor`` times the derivatives of this one."""
+        """Return the dual number ``value`` whose derivatives are those of this number times ``factor`` (chain rule)."""
         return Dual(value, {name: factor * slope for name, slope in self.slopes.items()})
 
     def __add__(self, other: Any) -> "Dual":
@@ -74,14 +78,15 @@ class Dual:
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Return functions such as sin and sqrt for dual numbers, made from the functions for plain numbers.
+    """Return functions such as sin and sqrt that take and return dual numbers, by name.
 
-    ``functions`` maps the name of each function to its version for the kind of number in the dual numbers.
+    ``functions`` maps the name of each function to its version for plain numbers (the values inside the dual numbers):
+    ``dual_functions({"sin": math.sin, "cos": math.cos})`` contains a sine of dual numbers with float values.
 
     Raises
     ------
     InputError
-        When abs is called: it has no derivative at zero.
+        When the function abs of the result is called: abs has no derivative at zero.
     """
     f = functions
     rules: dict[str, Callable[[Any, Any], Any]] = {  # derivative at x of the function with the value y

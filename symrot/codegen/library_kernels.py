@@ -17,9 +17,9 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program (temporaries, then outputs) of the library kernel with the given name.
+    """Return the straight-line program (temporaries, then outputs) of the library kernel ``name``, for printing.
 
-    A kernel with derivatives is computed in the way that needs the fewest operations.
+    A kernel with derivatives, such as ``quaternion_dcm_by_q``, is computed in the way that needs the fewest operations.
     """
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
@@ -35,7 +35,10 @@ def kernel_program(name: str) -> Program:
 
 
 def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
-    """Return the formulas of a kernel, once for each way to compute them (:func:`symrot.codegen.derivatives.ways`)."""
+    """Return the formulas of a kernel, once for each way to compute them; without derivatives there is one way only.
+
+    See :func:`symrot.codegen.derivatives.ways`.
+    """
     formulas = Formulas(kernel.formulas, kernel.named)
     base, *variables = name.split(BY)
     if not variables:
@@ -47,7 +50,7 @@ def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula in which the symbols that ``values`` contains are replaced by formulas."""
+    """Return a formula in which each symbol with a name in ``values`` is replaced by the formula stored there."""
     if not children(node):
         return values.get(node[1], node) if node[0] == "symbol" else node
     if node[0] == "call":
@@ -58,9 +61,10 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return the texts in the head comment of a library kernel's file.
+    """Return the texts for the head comment of a library kernel's file: title, domain, source, command that prints it.
 
-    In C they include the ranges of the inputs (the box) and ``errors``, the bounds of rounding errors in these ranges.
+    ``target`` is the language, such as ``"c"``. In C the texts include the ranges of the inputs in which rounding
+    errors are bounded (the box of the kernel), and ``errors``, a text with these bounds, if it is not empty.
     """
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
@@ -71,7 +75,10 @@ def kernel_description(kernel: Definition, target: str, errors: str = "") -> Des
 
 
 def _box(box: Box) -> str:
-    """Return a text of the input ranges in which rounding errors are bounded; equal ranges share an entry."""
+    """Return the ranges of the inputs as text, such as ``theta, phi in [-4, 4]; m in [1, 10]``.
+
+    A box maps each input to the range in which rounding errors are bounded.
+    """
     names: dict[tuple[str, str], list[str]] = {}
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)

@@ -18,7 +18,10 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return the Python function of a program: its NumPy text is written to a file and imported as a module."""
+    """Return the Python function that computes a program's outputs: its emitted NumPy text, imported as a module.
+
+    Tests call it to check the emitted text itself.
+    """
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

@@ -20,7 +20,11 @@ ANONYMOUS = "#"  # first letter of temporaries that get their names later
 
 
 class Recorder:
-    """A record of operations, in which equal operations occur once and operations with constants are folded."""
+    """A record of the operations of one computation, from which :meth:`program` makes a straight-line program.
+
+    ``symbol`` gives the inputs, numbers of type :class:`Recorded`; computing with them adds operations to the record.
+    Equal operations occur once. Operations that change nothing, such as adding 0 or multiplying by 1, are left out.
+    """
 
     def __init__(self) -> None:
         self.known: dict[Operation, int] = {}
@@ -41,7 +45,10 @@ class Recorder:
         return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
 
     def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
-        """Return the program of the recorded operations that the outputs need; a result used once is not named."""
+        """Return the straight-line program that computes ``outputs``, a mapping from output names to recorded numbers.
+
+        Operations that no output needs are left out. A result that is used repeatedly, or a call, becomes a temporary.
+        """
         roots = {name: self.index(value) for name, value in outputs.items()}
         operations = list(self.known)
         uses = Counter(roots.values())
@@ -68,7 +75,10 @@ class Recorder:
 
 
 class Recorded:
-    """A number that records the operations in which it occurs."""
+    """A number without a value: an operation with it adds an entry to its ``recorder`` and returns the entry's number.
+
+    ``index`` is the place of its own entry in the record.
+    """
 
     def __init__(self, recorder: Recorder, index: int) -> None:
         self.recorder, self.index = recorder, index
@@ -115,5 +125,5 @@ class Recorded:
 
 
 def is_exactly(value: Any, number: int) -> bool:
-    """Return whether a value is an exact number, not a recorded one, and equal to ``number``."""
+    """Return whether ``value`` is a plain number, not a recorded one, and equal to ``number``, such as 0 or 1."""
     return not isinstance(value, Recorded) and bool(value == number)

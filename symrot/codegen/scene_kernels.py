@@ -67,14 +67,17 @@ def _rates(equations: Equations) -> Formulas:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the program ``name`` of the right-hand side ``dy/dt`` of the equations of motion, and its parameters."""
+    """Return the program of the right-hand side ``dy/dt`` of equations of motion, with its parameters' formulas.
+
+    ``name`` is the name of the program. Its arguments are t, the states y, the parameters p and the rates dy.
+    """
     signature = Signature(name, (TIME, _state_argument(equations), _rates_argument(equations)))
     rates = _rates(equations)
     return lower(signature, rates.outputs, rates.named)
 
 
 def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Formulas, tuple[Argument, ...]]:
-    """Return the rates of a scene with their derivatives as formulas, and the output arrays for both.
+    """Return (formulas, output arrays) of the rates dy/dt of a scene and of their derivatives by ``variables``.
 
     Parameters
     ----------
@@ -83,6 +86,11 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     variables : sequence of str
         ``"y"`` (all states), ``"omega"``, ``"q"`` or ``"angles"`` (some states), a single state, ``"t"``, or a physical
         constant of the equations.
+
+    Returns
+    -------
+    (Formulas, tuple of Argument)
+        The formulas by the chain rule. The output arrays are dy, then one array of derivatives per variable.
 
     Raises
     ------
@@ -125,7 +133,10 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the states or the constant with a name, as symbols of the equations."""
+    """Return the symbols that a name stands for: all states for ``"y"``, a group such as ``"omega"``, or one symbol.
+
+    Raises InputError if the equations contain neither a state nor a constant of this name.
+    """
     families = {"omega": symbols.omega_b, "q": symbols.quaternion, "angles": symbols.angles}
     states = [state for state in equations.states if name == "y" or state in families.get(name, ())]
     if states:
@@ -168,10 +179,12 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive and return the kernel of a planned motion: its rates, its other quantities and its conserved quantities.
+    """Derive and return the kernel of a planned motion.
 
-    As soon as the rates are derived, ``on_rates`` is called with them and their C text, so that a compiler can run
-    while the other quantities are derived and their conservation is proven.
+    Programs of its rates dy/dt, its quantities, its conserved quantities. ``structure`` describes the motion without
+    the values of its constants. As soon as the rates are derived, ``on_rates`` is called with their program and their C
+    text, so that a compiler can run while the other quantities, such as energy and momentum, are derived and the
+    conservation of some is proven.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -199,7 +212,11 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return a program whose parameters have their formulas and values as descriptions, for the head comment."""
+    """Return a program that describes each parameter by its formula and value, as in ``(A - C)/A = 0.25``.
+
+    ``parameters`` holds the formulas and ``constants`` the values of the constants in them. The head comment of the
+    emitted file contains these descriptions.
+    """
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)

@@ -154,9 +154,10 @@ def stepped(
 
 
 def _without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
-    """Return rates without the numbers by which whole formulas are multiplied, such as 1/2, and these numbers.
+    """Return the rates without the numbers that multiply whole formulas, and these numbers, one per rate.
 
-    A step multiplies each of its weights by them once, instead of each rate at each stage.
+    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step multiplies its weights by these numbers once, instead of
+    each rate at each stage.
     """
     outputs, factors = [], []
     for name, node in rates.outputs:
@@ -174,7 +175,7 @@ def _without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
 
 
 def _polynomial(series: Sequence[Any], dt: Any) -> Any:
-    """Return the value of a polynomial by Horner's rule; ``series`` begins with the constant."""
+    """Return the value of the polynomial with the coefficients ``series``, lowest power first, at ``dt``."""
     value = series[-1]
     for coefficient in reversed(series[:-1]):
         value = coefficient + dt * value
@@ -182,7 +183,10 @@ def _polynomial(series: Sequence[Any], dt: Any) -> Any:
 
 
 def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the inputs of a step that a name in :class:`WithDerivatives` stands for: (name, unit, meaning) of each.
+    """Return the inputs by which a step is differentiated, as (name, unit, meaning) of each.
+
+    ``name`` is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"``, ``"dt"``, ``"t"``, one state or one parameter;
+    ``rates`` is the program of the rates dy/dt.
 
     Raises
     ------
@@ -203,7 +207,11 @@ def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], 
 
 
 def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signature:
-    """Return the name and the arguments of a step: t, x, p (if the rates have parameters), dt, next, derivatives."""
+    """Return the name and the arguments of a step: t, x, p (if any), dt, the result ``next``, and its derivatives.
+
+    ``rates`` is the program of dy/dt. For each name in ``by``, such as ``"omega"`` (see :class:`WithDerivatives`),
+    there is one output array of derivatives.
+    """
     time, state = rates.signature.argument("t"), rates.signature.argument("y")
     size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
     results = tuple((f"{NEXT}_{each}", unit, f"{meaning} at t + dt") for each, unit, meaning in state.components)

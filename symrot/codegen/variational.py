@@ -16,7 +16,7 @@ __all__ = ["variational_program"]
 
 
 def variational_program(rates: Program, columns: Sequence[Collection[str]]) -> Program:
-    """Return the program of the rates of the states and of their derivatives.
+    """Return the program of the rates of the states and of their derivatives by initial values and parameters.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ MARKS = {
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """Return the known word that is most similar to a mistyped word, or an empty text if none is similar."""
+    """Return the entry of ``known`` that is most similar to a mistyped word, or an empty text if none is similar."""
     from difflib import get_close_matches
 
     close = get_close_matches(word.lower(), list(known), 1, 0.5)
@@ -97,7 +97,10 @@ def nearest(word: str, known: Collection[str]) -> str:
 
 
 def function_advice(name: str, known: Collection[str]) -> str:
-    """Return advice (what to write instead) for an unknown function or wrong arguments, or an empty text."""
+    """Return what to write instead of the function ``name``, which is unknown or has wrong arguments, or an empty text.
+
+    ``known`` holds the functions that are allowed here: ``sgn`` gives ``write sign(u)`` if sign is among them.
+    """
     if name in known:
         return f"write {SIGNATURES.get(name, f'{name}(u)')}"
     if name in JUMPING:
@@ -119,7 +122,10 @@ def _called(text: str) -> list[str]:
 
 
 def name_advice(name: str, known: Collection[str]) -> str:
-    """Return advice (what to write instead) for an unknown name, or an empty text."""
+    """Return what to write instead of the unknown name ``name``, or an empty text; ``known`` holds the allowed names.
+
+    For example, ``T`` gives ``write t``.
+    """
     write = NAMES.get(name, "") or NAMES.get(name.lower(), "")
     if write and (write in known or "(" in write or " " in write):
         return f"write {write}"
@@ -128,7 +134,10 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return advice (what to write instead) for an unknown character or a missing operator, or an empty text."""
+    """Return what to write instead of the text at ``position`` of the formula ``source``, or an empty text.
+
+    There the reader met a character that is no operator, as ``^`` (``write ** for a power``), or missed an operator.
+    """
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

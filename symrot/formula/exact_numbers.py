@@ -154,7 +154,7 @@ def _bits_for(value: Fraction) -> int:
 
 
 def without_turns(value: Fraction) -> Fraction:
-    """Return an angle, rad, reduced by a multiple of 2 pi to the range from -pi to pi, with an error below 2^-300."""
+    """Return an angle, rad, plus a multiple of 2 pi such that it lies between -pi and pi; the error is below 2^-300."""
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
     turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
     return value - round(value / turn) * turn
@@ -215,7 +215,7 @@ class Angle(NamedTuple):
         return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))
 
     def scaled(self, factor: Fraction) -> "Angle":
-        """Return the angle times a rational number."""
+        """Return the angle times the rational number ``factor``."""
         return Angle(self.rational * factor, self.half_turns * factor)
 
 

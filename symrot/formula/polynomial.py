@@ -21,7 +21,11 @@ Operand = Union["Polynomial", Fraction, int]
 
 
 class Polynomial:
-    """A polynomial as a mapping of monomials to nonzero coefficients; immutable by convention."""
+    """A polynomial: ``terms`` maps monomials to nonzero coefficients. It must not be changed after it is made.
+
+    A monomial is a tuple of pairs (generator, power): ``3 z x^2 + 5`` has the terms ``{(("x", 2), ("z", 1)): 3, ():
+    5}``.
+    """
 
     __slots__ = ("terms",)
 
@@ -88,9 +92,10 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficient of each product of powers of the generators ``names``, by the exponents of the powers.
+        """Return the coefficients of the polynomial in the generators ``names``.
 
-        With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
+        A mapping from exponents to coefficients. With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0):
+        5}``.
         """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
@@ -143,7 +148,11 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 
 
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
-    """Return the monomials of the expanded product of two polynomials, even if their coefficients cancel."""
+    """Return all products of a monomial of ``left`` and one of ``right``.
+
+    These are the terms that multiplying out produces, also those whose coefficients cancel; their number measures its
+    cost.
+    """
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 
 
@@ -157,17 +166,17 @@ def constant(value: Fraction | int) -> Polynomial:
 
 
 def generator(name: str | int) -> Polynomial:
-    """Return the polynomial that consists of one variable (generator)."""
+    """Return the polynomial that is the single variable (generator) ``name``."""
     return Polynomial({((name, 1),): Fraction(1)})
 
 
 def cosine(angle: str) -> Polynomial:
-    """Return the generator that represents the cosine of an angle."""
+    """Return the polynomial that is the cosine of the angle with the name ``angle``, a generator of its own."""
     return generator(f"cos({angle})")
 
 
 def sine(angle: str) -> Polynomial:
-    """Return the generator that represents the sine of an angle."""
+    """Return the polynomial that is the sine of the angle with the name ``angle``, a generator of its own."""
     return generator(f"sin({angle})")
 
 
@@ -185,7 +194,10 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return the sort key that orders monomials lexicographically in the given variables."""
+    """Return a sort key for monomials.
+
+    Their exponents of the generators ``names``, so that the order is lexicographic.
+    """
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 
 

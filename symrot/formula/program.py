@@ -18,7 +18,7 @@ __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json"
 
 @dataclass(frozen=True)
 class Argument:
-    """One input or output argument of a kernel.
+    """One input or output argument of a kernel: its name, its ``role`` (``"in"`` or ``"out"``), and its numbers.
 
     ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one component.
     """
@@ -35,7 +35,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Signature:
-    """Name and arguments of a kernel, in order."""
+    """The name of a kernel and its arguments, in the order of the emitted functions."""
 
     name: str
     arguments: tuple[Argument, ...]
@@ -59,9 +59,10 @@ class ProgramRecord(TypedDict):
 
 @dataclass(frozen=True)
 class Program:
-    """A straight-line program: temporaries in order of computation, each assigned once, then the outputs.
+    """A straight-line program: ``temporaries`` in order of computation, each assigned once, then ``outputs``.
 
-    The formulas contain component names of the input arguments and names of earlier temporaries.
+    Both hold pairs (name, formula). A formula contains names of components of the input arguments and of earlier
+    temporaries: ``temporaries = (("s", a*b),)`` and ``outputs = (("y", s + s*c),)`` with a, b, c as inputs.
     """
 
     signature: Signature
@@ -81,7 +82,10 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero if the inputs ``zeros`` are zero, as far as the formulas show directly."""
+        """Return the outputs that are zero if the inputs ``zeros`` are zero, as far as the formulas show directly.
+
+        An output such as ``a*b`` with a in ``zeros`` counts; one that is zero only because its terms cancel does not.
+        """
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
             if vanishes(node, known):
@@ -89,7 +93,7 @@ class Program:
         return frozenset(name for name, _ in self.outputs if name in known)
 
     def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
-        """Return whether a symbol occurs in the computation of the outputs, or of the outputs ``only`` if given."""
+        """Return whether the input or temporary ``symbol`` is needed for the outputs, or for those in ``only``."""
         needed = {name for name, _ in self.outputs} if only is None else set(only)
         for name, node in reversed((*self.temporaries, *self.outputs)):
             needed |= names(node) if name in needed else set()
@@ -132,7 +136,7 @@ class Program:
 
     @classmethod
     def from_json(cls, data: ProgramRecord) -> "Program":
-        """Return the program that the result of :meth:`to_json` describes."""
+        """Return the program whose record ``data`` is, as :meth:`to_json` makes it."""
         arguments = tuple(
             Argument(name, role, tuple((component, unit, meaning) for component, unit, meaning in components), scalar)
             for name, role, components, scalar in data["arguments"]
@@ -145,7 +149,10 @@ class Program:
 
 
 def node_to_json(node: Node) -> list[Any]:
-    """Return a formula as nested lists, with numbers as exact text."""
+    """Return a formula as nested lists for JSON, with numbers as exact text.
+
+    ``["*", ["number", "1/2"], ["symbol", "q0"]]``.
+    """
     kind = node[0]
     if kind == "number":
         return [kind, str(node[1])]
@@ -159,7 +166,7 @@ def node_to_json(node: Node) -> list[Any]:
 
 
 def node_from_json(data: list[Any]) -> Node:
-    """Return the formula that the result of :func:`node_to_json` describes."""
+    """Return the formula whose nested lists ``data`` are, as :func:`node_to_json` makes them."""
     kind = data[0]
     if kind == "number":
         return ("number", Fraction(data[1]))

@@ -12,7 +12,7 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with radicand = u^2 v, so that the root of the radicand is abs(u) sqrt(v), or None if u is 1.
+    """Return (u, v) with ``radicand = u^2 v``, so that its root is abs(u) sqrt(v); None if it contains no square.
 
     A sum such as t**2 - 2*c*t + c**2 also counts as a square if it is the square of a polynomial in its symbols and
     function calls.
@@ -24,7 +24,7 @@ def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
 
 
 def _split(node: Node) -> tuple[Node, Node]:
-    """Return (u, v) with node = u^2 v; u is 1 if no factor of the formula is written as a square."""
+    """Return (u, v) with node = u^2 v, as in (a, b) for ``a**2*b``; u is 1 if no factor is written as a square."""
     kind = node[0]
     if kind in ("*", "/"):
         (a, v), (b, w) = map(_split, children(node))
@@ -43,7 +43,7 @@ def _joined(kind: str, left: Node, right: Node) -> Node:
 
 
 def _root_of_sum(node: Node) -> Node | None:
-    """Return the polynomial whose square is the given formula, or None if the formula is not a square."""
+    """Return the polynomial whose square is the formula ``node``; None if there is none or the formula is long."""
     generators: dict[str, Node] = {}
     polynomial = as_polynomial(node, generators)
     if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:
@@ -56,9 +56,10 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and function calls, which are added to ``generators`` by name.
+    """Return a formula as a polynomial whose generators are the texts of its symbols and function calls.
 
-    Return None if the formula is not such a polynomial, or if the polynomial has too many terms.
+    ``generators`` gets an entry (text, formula) for each. Return None if the formula is not such a polynomial, or if
+    the polynomial has too many terms.
     """
     kind = node[0]
     if kind == "number":

@@ -87,10 +87,10 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Smooth formulas and their switches; each switch comes after the switches whose modes occur in its guard.
+    """Formulas without jumps and kinks, and the switches that replace these.
 
-    Formulas and guards may contain ``where(p, a, b)``, in which p is a formula of modes with the value 1 or 0; see
-    :func:`chosen`.
+    ``formulas`` and guards may contain names of modes, and ``where(p, a, b)``, in which p is a formula of modes with
+    the value 1 or 0; see :func:`chosen`. Each of the ``switches`` comes after those whose modes occur in its guard.
     """
 
     formulas: tuple[Node, ...]
@@ -98,7 +98,10 @@ class Smooth(NamedTuple):
 
 
 def has_switches(node: Node) -> bool:
-    """Return whether a formula contains a function that jumps or has a kink."""
+    """Return whether a formula contains a function that jumps or has a kink, such as sign, abs or max.
+
+    Only then must it be rewritten by :func:`smooth`.
+    """
     if node[0] == "call" and node[1] in SWITCHING:
         return True
     if node[0] == "call" and node[1] in BENDING and names(node) & CHANGING:
@@ -109,7 +112,10 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return a text that says how to write the first wrong condition in a formula; empty if all are right."""
+    """Return what to write instead of the first wrong condition of ``where`` in a formula; empty if all are right.
+
+    For ``1 < t < 2`` the text is "one comparison at a time: '1 < t and t < 2' instead of '1 < t < 2'".
+    """
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -129,24 +135,25 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all conditions hold for given modes; a condition is a pair: a formula and the value it must have.
+    """Return whether all conditions hold: whether each formula, a function of ``modes``, has the value paired with it.
 
-    While the motion slides along a switch, its mode is in ``held`` and has no fixed value. A condition that contains
-    such a mode counts as true.
+    ``modes`` maps names of modes (see the module) to their present values. While the motion slides along a switch, its
+    mode is in ``held`` and has no fixed value. A condition that contains such a mode counts as true.
     """
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
-    """Return whether a formula contains a call ``where(p, a, b)``."""
+    """Return whether a smooth formula still contains a call ``where(p, a, b)``, which :func:`chosen` replaces."""
     return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a smooth formula in which each ``where`` is replaced by the part that applies for given modes.
+    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by a or b, by the values of the modes.
 
-    While a motion slides along a switch (its guard stays at zero), the mode of the switch is in ``held``. A
-    ``where(p, a, b)`` whose condition p depends on this mode is replaced by the sum ``b + p (a - b)``.
+    ``modes`` maps names of modes (see the module) to values, from which p is 1 (a applies) or 0 (b applies). While a
+    motion slides along a switch (its guard stays at zero), the mode of the switch is in ``held``. A ``where(p, a, b)``
+    whose p depends on this mode is replaced by the sum ``b + p (a - b)``.
     """
     if not has_choices(node):
         return node
@@ -165,7 +172,7 @@ def blended(node: Node) -> Node:
 
 
 def placed(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return the formula in which the names in ``values`` are replaced by formulas."""
+    """Return the formula in which each symbol whose name is in ``values`` is replaced by the formula given there."""
     if node[0] in ("number", "symbol"):
         return values.get(node[1], node) if node[0] == "symbol" else node
     parts = tuple(placed(child, values) for child in children(node))
@@ -173,10 +180,11 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return a key that is equal for proportional formulas, and the sign of the factor between the formula and its key.
+    """Return (key, sign) of a formula, where proportional formulas such as ``t - 1`` and ``2 - 2*t`` have the same key.
 
-    Formulas with the same key have the same zeros, so that one search for zeros is enough for all of them. If a formula
-    is not a polynomial in symbols and function calls, the key is the formula itself.
+    The sign is that of the factor between the formula and its key. Formulas with the same key have the same zeros, so
+    that one search for zeros is enough for all of them. If a formula is not a polynomial in symbols and function calls,
+    the key is the formula itself.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
@@ -198,7 +206,7 @@ def between_sides(node: Node, mode: str) -> Node:
 
 
 def _is_linear(node: Node, mode: str) -> bool:
-    """Return whether a formula, as it is written, is linear in a mode."""
+    """Return whether a formula, as it is written, is linear in the symbol ``mode`` (of degree 0 or 1)."""
     if mode not in names(node) or node == ("symbol", mode):
         return True
     parts = children(node)
@@ -211,9 +219,10 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula that, between two switches, is a polynomial in time, states and sines of time.
+    """Return the degree of a formula as a polynomial in time, states and sines of time, between two switches.
 
-    The result is RISKY if the formula may be anything else: undefined, with a pole or with a short pulse.
+    The result is RISKY if the formula may be anything else: undefined, with a pole or with a short pulse. Such a part
+    of a ``where`` is not evaluated while the other part applies.
     """
     kind = node[0]
     if kind in ("number", "symbol"):
@@ -244,7 +253,11 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas, given as text, in smooth form, together with the switches that replace jumps and kinks."""
+    """Return formulas, given as text, in smooth form, together with the switches that replace jumps and kinks.
+
+    The formula ``abs(t)`` becomes ``s*t`` with a mode s, which is the sign of t. The table of the module lists the
+    smooth form of each function.
+    """
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
     prefix = MODES
@@ -262,7 +275,11 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the symbol of the mode of a guard; the first call with a guard creates the mode."""
+        """Return the symbol of the mode of a guard. Its switch is added by the first call with this guard.
+
+        ``kind``, ``where`` and ``at_zero`` are those of :class:`Switch`; a mode that holds under fewer conditions
+        serves too.
+        """
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -309,7 +326,7 @@ class _Writer:
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return a condition as a formula of modes with the value 1 if the condition holds, otherwise 0."""
+        """Return the formula of modes that is 1 if a condition such as ``t < 1 and omega_1 < 0`` holds, otherwise 0."""
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)

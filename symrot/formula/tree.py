@@ -159,7 +159,10 @@ class _Reader:
         return Fraction(token)
 
     def power(self, position: int) -> int:
-        """Read and return an exponent: a whole number, possibly with a sign or in brackets."""
+        """Return the exponent that starts at token ``position``.
+
+        A whole number, possibly with a sign or in brackets.
+        """
         brackets = self.peek() == "("
         if brackets:
             self.next()
@@ -214,7 +217,10 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """Return the operands of the operation at the root of a formula tree."""
+    """Return the operands of the operation at the root of a formula tree.
+
+    (a, b) for ``("+", a, b)``, none for a symbol.
+    """
     kind = node[0]
     if kind in ("number", "symbol"):
         return ()
@@ -239,7 +245,7 @@ def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapp
 
 
 def names(node: Node) -> set[str]:
-    """Return the names of the symbols in a formula."""
+    """Return the names of all symbols in a formula; names of functions do not count."""
     if node[0] == "symbol":
         return {node[1]}
     return set().union(*(names(child) for child in children(node)))
@@ -264,7 +270,10 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero."""
+    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero, as ``a*b`` is for a.
+
+    A formula that is zero only because its terms cancel gives False.
+    """
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros

@@ -33,7 +33,12 @@ class Law:
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel: its arguments in order, the formulas of its outputs, its domain, and the laws of its outputs."""
+    """A kernel of the library as symrot derives it: arguments, formulas, and what is known about them.
+
+    ``inputs`` are the input arguments; ``results`` pairs each output argument with its formulas. ``domain`` says in
+    words for which inputs the formulas hold, ``derivation`` names the page that derives them. ``box`` gives the range
+    of each input for which rounding errors are bounded; ``laws`` returns identities that the outputs satisfy.
+    """
 
     name: str
     title: str
@@ -56,9 +61,9 @@ class Definition:
 
 
 def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
-    """Return an input or output array whose components are symbols of :mod:`symrot.symbols`, with their units.
+    """Return an input or output array (``role`` is ``"in"`` or ``"out"``) with one entry per component.
 
-    If the components are given as text instead, ``unit`` is their unit.
+    Components are symbols of :mod:`symrot.symbols`, which knows their units, or texts, all with the unit ``unit``.
     """
     described = []
     for component in components:
@@ -68,22 +73,25 @@ def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: 
 
 
 def scalar(component: Symbol, meaning: str) -> Argument:
-    """Return a scalar input argument."""
+    """Return the input argument that is the single number ``component``, with ``meaning`` as its description."""
     return Argument(str(component), "in", ((str(component), symbols.UNIT[component], meaning),), is_scalar=True)
 
 
 def result(
     name: str, formulas: Matrix | Sequence[Expr], components: Sequence[Symbol], meaning: str, unit: str = ""
 ) -> tuple[Argument, tuple[Expr, ...]]:
-    """Return an output argument and the formulas of its components; a matrix is stored row by row."""
+    """Return (output argument, formulas of its components) as :class:`Definition` stores them; a matrix row by row.
+
+    The other arguments are those of :func:`argument`.
+    """
     return argument(name, "out", components, meaning, unit), tuple(formulas)
 
 
 def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fraction, Fraction]:
-    """Return the range of an input, from ``low`` to ``high``, in exact numbers."""
+    """Return the range from ``low`` to ``high`` of an input, as a pair of exact fractions; ``"1/10"`` is 1/10."""
     return Fraction(low), Fraction(high)
 
 
 def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
-    """Return a box in which the range of each of the inputs is from ``low`` to ``high``."""
+    """Return a box (input name -> range) in which each of the ``components`` lies between ``low`` and ``high``."""
     return {str(component): interval(low, high) for component in components}

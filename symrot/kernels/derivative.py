@@ -58,16 +58,17 @@ def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
 
 
 def _plain(expr: Expr, variable: Symbol, back: Mapping[Expr, Expr]) -> Expr:
-    """Return the derivative of an expression in which symbols stand for all calls of symrot's own functions.
+    """Return the derivative of an expression in which symbols stand for the calls of functions such as sinc.
 
-    In the result each of these symbols is replaced by its call, which ``back`` holds.
+    These functions are symrot's own, and SymPy cannot differentiate them; their symbols are constants here. ``back``
+    maps each symbol to its call, which replaces it in the result.
     """
     slope = expr.diff(variable).replace(sign, lambda value: copysign(Integer(1), value))
     return slope.xreplace(dict(back))
 
 
 def _is_outermost(call: Expr, expr: Expr) -> bool:
-    """Return whether a call occurs in an expression outside the arguments of symrot's other functions."""
+    """Return whether a call of a function such as sinc occurs in ``expr`` outside the arguments of other such calls."""
     if expr == call:
         return True
     if isinstance(expr, AppliedUndef):
@@ -76,7 +77,10 @@ def _is_outermost(call: Expr, expr: Expr) -> bool:
 
 
 def _slope(call: Expr, variable: Symbol) -> Expr:
-    """Return the derivative of a call of one of symrot's own functions."""
+    """Return the derivative of a call of one of symrot's own functions, such as sinc(u), by the chain rule.
+
+    For a choice between two formulas (``select_ge``) it is the choice between their derivatives.
+    """
     name = call.func.__name__
     if name == "select_ge":
         left, right, *choices = call.args
@@ -92,14 +96,17 @@ def _slope(call: Expr, variable: Symbol) -> Expr:
 
 
 class Derivatives:
-    """The derivatives of formulas by inputs: the chain rule through the named quantities that the formulas contain.
+    """Computes derivatives of formulas that contain named quantities, such as ``angle = sqrt(v . v)``.
+
+    The chain rule multiplies by the derivative of each quantity, so that its formula need not be substituted.
 
     Parameters
     ----------
     named : sequence of (Symbol, Expr)
-        Quantities with a name; later formulas may contain the symbols of earlier ones.
+        The quantities with their formulas, which may contain the symbols of earlier quantities.
     short : bool
-        Whether the derivative of each quantity gets a name too, such as ``turning_by_theta``.
+        Whether the derivative of each quantity gets a name too, such as ``turning_by_theta``. The attribute ``named``
+        holds these derivatives.
     """
 
     def __init__(self, named: Sequence[tuple[Symbol, Expr]], short: bool = True) -> None:
@@ -109,7 +116,11 @@ class Derivatives:
         self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
 
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
-        """Return the derivative of a formula by an input; ``value`` is the symbol for the formula, if there is one."""
+        """Return the derivative of ``expr`` by the input ``variable``; it may contain the symbols of named quantities.
+
+        ``value`` is the symbol for ``expr`` itself, or None. With y = a/b known, the shorter form ``(a' - y b')/b`` is
+        used.
+        """
         root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
         if value is not None and root_of is not None:
             return self.of(root_of, variable) / (2 * value)
@@ -137,7 +148,10 @@ class Derivatives:
         return self.slopes[key]
 
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
-        """Return the term of the chain rule for one named quantity; ``slope`` is the derivative of the quantity."""
+        """Return the term of the chain rule for the named quantity ``symbol`` in ``expr``.
+
+        D(expr)/d(symbol) times ``slope``. ``slope`` is the derivative of the quantity by the input.
+        """
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:
             partial = _with_sinc(expr, symbol, partial)
@@ -145,14 +159,15 @@ class Derivatives:
 
 
 def _is_product(expr: Expr) -> bool:
-    """Return whether an expression is a number times a symbol, which needs no name."""
+    """Return whether an expression is a number times a symbol, or a symbol; such a derivative gets no name."""
     return bool(expr.as_coeff_Mul()[1].is_Symbol)
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return the derivative ``partial`` of ``expr`` by a root (``symbol``), with ``sin(x)`` written as ``x*sinc(x)``.
+    """Return ``partial``, the derivative of ``expr`` by a root, with ``sin(x)`` written as ``x*sinc(x)``.
 
-    Here x is an angle in a cosine of ``expr``, a multiple of the root; it cancels the division by the root.
+    The root is a named quantity such as ``angle``, given by its ``symbol``, and x a multiple of it inside a cosine of
+    ``expr``. The derivative of the root divides by the root, which may be zero; the factor x cancels this division.
     """
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
     for angle in angles:

@@ -51,7 +51,7 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def tensor_argument(body: str = "tensor") -> Argument:
-    """Return the input argument for the inertia of a body: six entries of the tensor, or principal moments."""
+    """Return the input argument for the inertia of a body: six entries for ``"tensor"``, else the principal moments."""
     return argument("inertia", "in", _BODIES[body][0], _MEANING[body])
 
 
@@ -64,7 +64,11 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return (definitions, formulas) of the angular acceleration; the formulas contain the defined symbols."""
+    """Return (definitions, formulas) of the angular acceleration from Euler's equations.
+
+    Definitions are pairs (symbol, formula) of intermediate quantities, whose symbols the formulas contain. There are
+    none if the inertia is diagonal.
+    """
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -136,9 +140,9 @@ _DISTANCE = symbols.h
 
 
 def _heavy_top(name: str, body: str) -> Definition:
-    """Return the kernel of the equations of motion of a heavy top.
+    """Return the kernel ``name``, the equations of motion of a heavy top about its fixed point.
 
-    If the top is symmetric, its centre of mass lies on body axis 3.
+    ``body`` is ``"principal"`` or ``"symmetric"``; in a symmetric top the centre of mass lies on body axis 3.
     """
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
@@ -169,10 +173,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return symbols for twice the weight times the position of the centre of mass, and their definitions.
+    """Return (vector, definitions) of twice the weight times the position ``center`` of the centre of mass.
 
-    The factor 2 is here because the torque is computed as the cross product of half the upward vertical with this
-    vector. A component that is zero has no symbol.
+    The vector consists of symbols, except zeros; definitions are pairs (symbol, formula). The factor 2 is here because
+    the torque is computed as the cross product of half the upward vertical with this vector.
     """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

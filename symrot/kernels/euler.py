@@ -62,10 +62,11 @@ def _regular_box(sequence: str) -> Box:
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return (definitions, entries) of a matrix, with a new symbol for each product such as ``sin(phi)*cos(psi)``.
+    """Return (definitions, entries).
 
-    The factors of such a product are functions of the first and of the last angle. In a sum, a common factor, which
-    depends on the middle angle, is factored out.
+    The entries of a matrix with a symbol for each product such as ``sin(phi)*cos(psi)``. Definitions are pairs (symbol,
+    product). The factors of such a product are functions of the first and of the last angle; several entries contain
+    it. In a sum, a common factor, which depends on the middle angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -136,11 +137,12 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return (definitions, formulas) of the rates of the Euler angles, with a single division.
+    """Return (definitions, formulas) of the rates of the Euler angles from ``omega``, with a single division.
 
-    Of the first and the last angle, one rotates about an axis of the frame in which omega is given; call it a, and the
-    other one b. The rate of b is divided by the determinant and gets a symbol. The rate of a then needs no division by
-    the determinant: it follows from one component of omega and this symbol.
+    Definitions are pairs (symbol, formula); here there is one. Of the first and the last angle, one rotates about an
+    axis of the frame in which omega is given; call it a, and the other one b. The rate of b is divided by the
+    determinant and gets a symbol. The rate of a then needs no division by the determinant: it follows from one
+    component of omega and this symbol.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

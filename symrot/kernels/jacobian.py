@@ -40,7 +40,11 @@ def unit_of_quotient(above: str, below: str) -> str:
 
 
 def jacobian_argument(target: Argument, name: str, variables: Sequence[tuple[str, str, str]]) -> Argument:
-    """Return the output array of the derivatives of an output by the components of an input, row by row."""
+    """Return the output array of the derivatives of the output ``target`` by the components ``variables`` of an input.
+
+    ``name`` is that of the input, and ``variables`` holds (name, unit, meaning). The derivatives are stored row by row,
+    one row per component of the output.
+    """
     components = tuple(
         (f"{output}{BY}{variable}", unit_of_quotient(unit, by), f"derivative of {target.name} by {name}")
         for (output, unit, _), (variable, by, _) in product(target.components, variables)
@@ -86,7 +90,7 @@ def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
 
 
 def _symbols(kernel: Definition) -> dict[str, Symbol]:
-    """Return the symbol of each input of a kernel, with the assumptions that its formulas make, such as positive."""
+    """Return the symbol of each input by its name, as the kernel's formulas contain it (positive, for example)."""
     formulas = [formula for _, formula in (*kernel.formulas, *kernel.named)]
     held = {str(symbol): symbol for formula in formulas for symbol in formula.free_symbols}
     return {name: held.get(name, Symbol(name, real=True)) for a in kernel.inputs for name, *_ in a.components}
@@ -103,7 +107,10 @@ def _distinct(kernel: Definition, variables: Sequence[str]) -> Sequence[str]:
 
 
 def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the components of the input argument called ``name``, or the single component of that name."""
+    """Return the components of the input ``name`` as (name, unit, meaning): all of an argument, or a single one.
+
+    Raises InputError if the kernel has no input of this name.
+    """
     for argument in kernel.inputs:
         if argument.name == name:
             return argument.components
@@ -115,9 +122,10 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
-    """Return the laws of the kernel, and the law that each derivative is the exact derivative of its output.
+    """Return the laws of a kernel with derivatives: those of ``kernel``, and that each derivative is exact.
 
-    For an output ``y = a/b`` the law is ``b y' = a' - y b'``, which is shorter than the derivative of the quotient.
+    A law is an identity that a certificate proves. ``chosen`` maps the names of inputs to their components. For an
+    output ``y = a/b`` the law is ``b y' = a' - y b'``, which is shorter than the derivative of the quotient.
     """
     symbols, laws = _symbols(kernel), list(kernel.laws())
     roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
@@ -135,7 +143,10 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of a formula by an input: the chain rule through ``roots``, for which symbols stand."""
+    """Return the derivative of ``formula`` by an input, in which symbols stand for the square roots ``roots``.
+
+    ``roots`` maps each symbol to its root, whose derivative is included (chain rule).
+    """
     through = [
         exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)
         for root, value in roots.items()

@@ -39,11 +39,11 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return (definitions, matrix) of the rotation matrix ``1 + scalar [t] + [t][axis]``, with symbols for t.
+    """Return (definitions, matrix) of the rotation matrix ``1 + scalar [t] + [t][axis]`` with t = ``doubled``.
 
-    Here [v] is the matrix of the cross product with v, and t = ``doubled`` is parallel to the axis. For a unit
-    quaternion (q0, u), the arguments are q0, u and 2 u. As [t][axis] is symmetric, each of its products is computed
-    once.
+    The matrix contains symbols for the components of t, and the definitions are pairs (symbol, formula). Here [v] is
+    the matrix of the cross product with v, and t is parallel to the axis. For a unit quaternion (q0, u), the arguments
+    are q0, u and 2 u. As [t][axis] is symmetric, each of its products is computed once.
     """
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
@@ -55,13 +55,16 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
-    """Return symbols for the components of half an angular velocity, as (definitions, symbols)."""
+    """Return (definitions, symbols) of half an angular velocity; definitions are pairs (symbol, component/2)."""
     half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
     return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
 
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
-    """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) for body components, else (0, omega/2) q."""
+    """Return ``dq/dt`` of the quaternion ``q`` from half the angular velocity, ``half``.
+
+    In quaternion products it is q (0, half) for body components, and (0, half) q for space components (``frame``).
+    """
     return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
 
@@ -117,9 +120,10 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and it
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_k^2`` and ``4 q_k q`` for k = ``pivot``, both linear in the rotation matrix of the quaternion q.
+    """Return (``4 q_k^2``, components of ``4 q_k q``) for k = ``pivot``, from the rotation matrix of a quaternion q.
 
-    ``4 q_k q`` divided by twice the root of ``4 q_k^2`` is q or -q, without loss of digits if ``q_k`` is large.
+    Both are linear in the matrix. ``4 q_k q`` divided by twice the root of ``4 q_k^2`` is q or -q, without loss of
+    digits if ``q_k`` is large.
     """
     q = quaternion_of_dcm(matrix, pivot)
     square = 4 * q[pivot] ** 2
@@ -127,7 +131,7 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the formulas that select the branch ``(4 q_k^2, 4 q_k q)`` with the larger ``4 q_k^2``."""
+    """Return formulas that select the result of :func:`_branch` with the larger ``4 q_k^2`` when they are evaluated."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
@@ -190,9 +194,10 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return (definitions, formulas) of a vector v rotated by q = (q0, u): ``v + q0 h + u x h`` with ``h = 2 u x v``.
+    """Return (definitions, components) of the vector v rotated by q = (q0, u).
 
-    The definitions are those of symbols for the components of h. This takes fewer operations than the rotation matrix.
+    ``v + q0 h + u x h`` with ``h = 2 u x v``. Definitions are pairs (symbol, formula) for the components of h. This
+    takes fewer operations than the rotation matrix.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

@@ -53,10 +53,11 @@ _x = Symbol("x", real=True)
 
 @dataclass(frozen=True)
 class Removable:
-    """An even analytic function of x, ``numerator / x^power``, whose quotient is undefined at zero.
+    """An even analytic function of x, such as sinc, written as ``numerator / x^power``, which is undefined at zero.
 
-    ``split`` is the square of the |x| below which the series is used; there its terms alternate in sign and decrease.
-    For larger |x|, ``scaled/x/x`` is computed: the same quotient without a high power of x, which could overflow.
+    ``split`` is the square of the |x| below which the Taylor series is used; there its terms alternate in sign and
+    decrease. For larger |x|, ``scaled/x/x`` is computed: the same quotient without a high power of x, which could
+    overflow.
     """
 
     name: str
@@ -71,10 +72,11 @@ class Removable:
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
-        """Return as many Taylor coefficients of the function, in powers of x^2, as a floating-point precision needs.
+        """Return as many Taylor coefficients of the function, in powers of x^2, as ``precision`` needs, lowest first.
 
-        The first omitted term at x^2 = ``split`` is less than a quarter of a unit in the last place of the smallest
-        value of the function in this range. Because the series alternates, this bounds the truncation error.
+        ``precision`` is ``"binary64"`` or ``"binary32"``. The first omitted term at x^2 = ``split`` is less than a
+        quarter of a unit in the last place of the smallest value of the function in this range. Because the series
+        alternates, this bounds the truncation error.
         """
         return _summed(self, precision)
 
@@ -138,9 +140,9 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression in which functions with a removable singularity, such as sinc, are written as quotients.
+    """Return an expression in which functions such as sinc(x) are written as quotients, here sin(x)/x.
 
-    The quotients are valid except where their denominators are zero.
+    Proofs compute with the quotients, which are valid except where their denominators are zero.
     """
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(

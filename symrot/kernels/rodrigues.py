@@ -41,9 +41,10 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return (definitions, s) such that the quaternion (s, parameters), not normalised, describes the attitude.
+    """Return (definitions, s) such that the quaternion (s, parameters), of any norm, describes the attitude.
 
-    The definitions are those of the symbols in the formula s.
+    Definitions are pairs (symbol, formula) for the symbols in s. For classical parameters s is 1; for modified
+    parameters it is (1 - p^2)/2.
     """
     if not which.centre:
         return (), Integer(1)

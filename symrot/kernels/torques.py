@@ -33,7 +33,10 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion whose torques rotate vectors by the quaternion, in fewer operations than by the rotation matrix."""
+    """A motion whose torques transform vectors from space to the body by the quaternion.
+
+    This takes fewer operations than the rotation matrix.
+    """
 
     def to_body(self, vector_s: Matrix) -> Matrix:
         named, components = turned(conjugate(self.quaternion), vector_s)

@@ -18,9 +18,10 @@ __all__ = ["enclosure_definitions", "enclosure_source"]
 
 
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
-    """Return C code that bounds the rates of a program on complex discs; see :func:`enclosure_definitions`.
+    """Return C code that bounds a program's rates on complex discs, so that a stepper notices pulses within a step.
 
-    For rates without a Taylor series, such as rates with abs, the code contains no bounds.
+    ``order`` and ``edges`` are explained in :func:`enclosure_definitions`. For rates without a Taylor series, such as
+    rates with abs, the result contains no bounds.
     """
     try:
         return enclosure_definitions(enclosure(recurrences(program)), order, edges)
@@ -84,7 +85,12 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression for a disc that contains all values of a series; ``places`` maps parameters to C."""
+    """Return the C expression of a complex disc that contains all values of a Taylor series near a step.
+
+    ``number`` is the index of the series in ``system``; ``places`` maps the names of parameters to C, as ``p1`` to
+    ``p[1]``. For the product of the series 2 and 5 it is ``symrot_disc_product(d2, d5)``: ``d2`` is the disc of series
+    2.
+    """
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

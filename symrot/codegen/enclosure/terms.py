@@ -44,16 +44,20 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands of a series on which its coefficient 0, the value of the quantity, depends.
+    """Return those operands of a series from whose values the value of the series (its Taylor coefficient 0) follows.
 
-    The other operands only affect later coefficients.
+    Operands are indices of series. The series of sin(u) also has operands, such as the series of cos(u), that only its
+    later coefficients need; they are left out.
     """
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return the terms of a system's rates that must be bounded, or None if there are no such terms."""
+    """Return the terms of the rates dy/dt of ``system`` that must be bounded because a step may miss a pulse in them.
+
+    None means that all terms are polynomials of low degree, which cannot hide a pulse.
+    """
     degrees: list[int] = []
     for series in system.series:
         degrees.append(min(_degree(series, degrees), BEYOND))
@@ -79,7 +83,11 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
-    """Return the degree of a series in states, time, sin and cos of ``a*t + b``; BEYOND if it is not a polynomial."""
+    """Return the degree of the quantity of a series as a polynomial in states, time, and sin and cos of ``a*t + b``.
+
+    ``degrees`` holds the degrees of the earlier series, which are its operands. The result is at least BEYOND, which
+    means "must be bounded", if the quantity is not such a polynomial, as for exp(u).
+    """
     if series.rule in ("state", "time"):
         return 1
     if series.rule == "clock":

@@ -1,4 +1,7 @@
-"""Common factors and common sums of several formulas, each of which is computed only once."""
+"""Common factors and common sums of several formulas, each of which is computed only once.
+
+In ``a*b*c`` and ``a*b + d`` the product ``a*b`` becomes one node, which both formulas use.
+"""
 
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -11,10 +14,11 @@ __all__ = ["Share"]
 
 
 class Share:
-    """A collection of formula trees in which the most frequent pair of factors or terms becomes a shared node.
+    """A collection of formula trees in which products and sums that occur repeatedly become one shared node.
 
-    Among equally frequent pairs, the pair that appears first is chosen. Equal nodes are stored only once, and each has
-    a number, its identity.
+    First all formulas are added (:meth:`add`), then :meth:`extract` looks for pairs of factors, or of terms, that occur
+    in several nodes. Each node has a number, its index in ``nodes``; the operands of a node are such numbers. Equal
+    nodes have the same number.
     """
 
     def __init__(self) -> None:
@@ -22,14 +26,14 @@ class Share:
         self.nodes: list[tuple[Any, ...]] = []  # nodes by identity; their operands are identities
 
     def intern(self, node: Tree) -> int:
-        """Return the number (identity) of a node whose operands are given by their numbers; add the node if new."""
+        """Return the number of a node, whose operands are given by their numbers; add the node to ``nodes`` if new."""
         if node not in self.identity:
             self.identity[node] = len(self.nodes)
             self.nodes.append(node)
         return self.identity[node]
 
     def add(self, tree: Tree) -> int:
-        """Add a formula tree and all its parts to the collection, and return the number of its node."""
+        """Add a formula tree and all its parts to the collection, and return the number of the tree's own node."""
         kind = tree[0]
         if kind in ("sym", "num"):
             return self.intern(tree)
@@ -41,7 +45,13 @@ class Share:
         return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
 
     def extract(self) -> None:
-        """Repeatedly replace the most frequent pair of factors or terms by a new node, until no pair occurs twice."""
+        """Replace the pair of factors or terms that most nodes contain by a new node.
+
+        Repeat until no pair occurs twice. In ``a*b*c`` and ``a*b*d`` the pair (a, b) becomes a node p, and the formulas
+        become ``p*c`` and ``p*d``. Quotients ``a/b`` are replaced first, then reciprocals ``1/b``, products, and sums.
+        Of several pairs that occur equally often, one without numbers comes first, then the one whose operands have the
+        lowest numbers.
+        """
         for kind, pairs, swap in (
             ("mul", self._quotient_pairs, self._swap_quotient),
             ("mul", self._reciprocals, self._swap_reciprocal),
@@ -76,11 +86,15 @@ class Share:
             yield "add", ((a, 1), (b, s * r))
 
     def _is_variable(self, pair: Any) -> bool:
-        """Return whether a pair contains no constant; such pairs are replaced first."""
+        """Return whether a pair is a sum, or a product without a number; such pairs are replaced first."""
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Replace a pair of factors or terms in every node by the node for the pair, which is created if necessary."""
+        """Replace a pair of factors (``kind`` is ``"mul"``) or terms (``"add"``) in every node by the node of the pair.
+
+        ``swap`` returns a node with the pair replaced, or unchanged if the node does not contain it. The node of the
+        pair is appended if it does not exist.
+        """
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
@@ -130,5 +144,5 @@ def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
 
 
 def _negated(pair: Any) -> Any:
-    """Return a sort key that reverses the order of numbers, so that ``max`` selects the pair that appeared first."""
+    """Return a sort key with all numbers of a pair negated, so that ``max`` selects the lowest numbers."""
     return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

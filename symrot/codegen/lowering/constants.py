@@ -23,14 +23,17 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """A splitter of expressions into a constant factor, which it collects, and a core, which contains the variables.
+    """Splits expressions into a constant factor and a rest with variables, the core; collects the constants.
+
+    ``2*m*sin(theta)`` is split into ``2*m`` and ``sin(theta)``. The constants are collected in ``hoisted`` and become
+    parameters of the program, which are computed once per motion.
 
     Parameters
     ----------
     variables : iterable of Symbol
-        Symbols that change with time or state.
+        Symbols that change with time or state; all other symbols are constants.
     flat : bool
-        Whether a sum inside another sum is merged into the outer sum.
+        Whether a sum inside another sum is merged into the outer sum, so that their constants are combined.
     """
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
@@ -39,11 +42,15 @@ class Gather:
         self.memo: dict[Expr, tuple[Expr, Tree]] = {}
 
     def is_variable(self, expr: Expr) -> bool:
-        """Return whether an expression contains a variable."""
+        """Return whether an expression contains a variable; otherwise it is constant during a motion."""
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return (sign, tree) for a constant; the tree is a number, a symbol, or None if the constant is 1 or -1."""
+        """Return (sign, tree) for a constant: ``value`` is the sign, 1 or -1, times the value of the tree.
+
+        The tree is a number or the symbol of a parameter, which is added to ``hoisted`` if new; None if ``value`` is 1
+        or -1.
+        """
         sign, value = _oriented(value)
         if value == 1:
             return sign, None
@@ -53,7 +60,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return (sign, formula tree) of the product of a constant coefficient and a part with variables."""
+        """Return (sign, tree) of the product of the constant ``coefficient`` and ``core``, a part with variables."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core
@@ -63,7 +70,11 @@ class Gather:
         return sign, ("mul", (atom, *factors), divisors)
 
     def split(self, expr: Expr) -> tuple[Expr, Tree]:
-        """Return (constant, core) with ``expr = constant*core``; the core contains the variables, or is ONE."""
+        """Return (constant, core) with ``expr = constant*core``; the core is the tree of the part with variables.
+
+        For ``2*m*sin(theta)`` these are ``2*m`` and the tree of ``sin(theta)``. The core is ONE if ``expr`` is
+        constant.
+        """
         if expr not in self.memo:
             self.memo[expr] = self._split(expr)
         return self.memo[expr]
@@ -173,7 +184,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return the tree of a large power, written by repeated squaring: a product of all factors would be too long."""
+    """Return the tree of the power ``tree^count``, by repeated squaring if ``count`` exceeds LARGEST_POWER."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
@@ -181,9 +192,10 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return (sign, magnitude) for a constant. The magnitude is the same for a and -a, so that it is computed once.
+    """Return (sign, magnitude) of a constant, with the same magnitude for a and -a, so that one parameter serves both.
 
-    For example, (A - C)/A and (C - A)/A have the same magnitude.
+    For example, (A - C)/A and (C - A)/A have the same magnitude. It need not be positive: the signs of A - C and C - A
+    are not known.
     """
     sign, factors = 1, []
     for factor in Mul.make_args(value):
@@ -195,7 +207,10 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return (sign, sum) for signed terms, with a positive first term in the sum."""
+    """Return (sign, tree) of a sum of terms (sign, tree), with plus signs for most terms.
+
+    (-1, a + b) for ``-a - b``.
+    """
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

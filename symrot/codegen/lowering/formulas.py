@@ -54,7 +54,10 @@ def to_node(expr: Expr) -> Node:
 
 
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
-    """Return the tree of ``(a + b) + c`` for the nodes a, b, c; ``mark`` is the operator, such as ``+``."""
+    """Return the tree of one operator applied from left to right.
+
+    (a + b) + c for the nodes a, b, c and ``mark = "+"``.
+    """
     result = nodes[0]
     for node in nodes[1:]:
         result = (mark, result, node)
@@ -62,7 +65,13 @@ def chain(mark: str, nodes: Sequence[Node]) -> Node:
 
 
 def function_name(expr: Expr) -> str:
-    """Return the name of the function that an expression calls; raise InputError if kernels do not support it."""
+    """Return the name by which kernels call the function of an expression such as ``Abs(x)``, here ``"abs"``.
+
+    Raises
+    ------
+    InputError
+        If the expression is not a call of a function that kernels support.
+    """
     name = "abs" if isinstance(expr, Abs) else "exp" if expr.func.__name__ == "exp" else str(expr.func)
     if not isinstance(expr, Function) or (FUNCTIONS | OWN_FUNCTIONS).get(name) != len(expr.args):
         raise InputError(f"expected a formula of + - * /, whole and half powers and {', '.join(FUNCTIONS)}; got {expr}")

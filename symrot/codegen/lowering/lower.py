@@ -32,14 +32,23 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program and its parameters: ``parameters[k]`` is a pair (name, formula in terms of physical constants)."""
+    """A program, and the formulas of its parameters, which are constants that are computed once per motion.
+
+    ``parameters[k]`` is a pair (name of component k of the argument p, formula in terms of physical constants), for
+    example ``("p0", (A - C)/A)`` for the moments of inertia A and C.
+    """
 
     program: Program
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes formulas as assignments in order of computation; a node that is used repeatedly becomes a temporary."""
+    """Writes the nodes of a :class:`Share` as assignments in order of computation.
+
+    A node becomes a temporary if it is used repeatedly, calls a function, or is in ``named`` (number of the node ->
+    name). ``roots`` are the numbers of the output nodes. Names of other temporaries follow when the program is
+    complete; until then they begin with ANONYMOUS.
+    """
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         self.nodes, self.named = share.nodes, dict(named)
@@ -67,7 +76,7 @@ class _Writer:
                 self._count(operand, seen)
 
     def node(self, index: int) -> Node:
-        """Return the formula of a node, or the symbol of its temporary if it has one."""
+        """Return the formula of the node ``index``, or the symbol of its temporary, which is added if necessary."""
         kind = self.nodes[index][0]
         if kind == "num":
             return ("number", self.nodes[index][1])
@@ -89,7 +98,10 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Return whether a node is written as a sum in brackets. In a product such a sum comes first: (A - B) x y."""
+        """Return whether a node is printed as a sum in brackets. In a product such a sum comes first: (A - B) x y.
+
+        A sum that is a temporary is printed as its name, without brackets.
+        """
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
     def _formula(self, index: int) -> Node:
@@ -147,9 +159,10 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return the straight-line program, and the temporaries that have no descriptive name yet.
+    """Return (the program with its parameters, the temporaries that have no descriptive name yet).
 
-    If ``flat`` is true, nested sums are merged before common parts are shared.
+    The arguments are those of :func:`lower`. If ``flat`` is true, nested sums are merged before common parts are
+    shared; :func:`lower` tries both and keeps the program with fewer operations.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
@@ -174,7 +187,10 @@ def _lowered(
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
-    """Return the parameters, by name, that are printed as numbers, such as multiples of pi and roots of integers."""
+    """Return those parameters, by name, whose formula contains no physical constant, such as 2 pi or sqrt(3).
+
+    They are printed as numbers, so a temporary is named after their formula.
+    """
     return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
 
@@ -186,7 +202,12 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return the program in which constants are parameters, numbered in order of use and added to the signature."""
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, numbered by first use, and their formulas.
+
+    ``hoisted`` maps each constant to its preliminary symbol in the ``temporaries`` and ``formulas``; ``targets`` names
+    the outputs, which the formulas compute. The parameters are added to the signature as the argument
+    ``parameter_argument``.
+    """
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):
         for name in _leaves(node):
@@ -222,7 +243,7 @@ def _exact(expr: Expr) -> Expr:
 
 
 def _substitute(tree: Tree, alias: dict[str, Tree]) -> Tree:
-    """Return a tree with each defined symbol replaced by the tree of its definition."""
+    """Return a formula tree in which each symbol that ``alias`` contains is replaced by the tree of its definition."""
     kind = tree[0]
     if kind == "sym":
         return alias.get(tree[1], tree)

@@ -31,13 +31,20 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a signed term; if possible, a minus sign is moved into a difference: -(a - b)*c becomes +(b - a)*c."""
+    """Return (sign, node) for the term ``sign * node`` of a sum, with a positive sign if that costs no operation.
+
+    A minus sign is moved into a difference among the factors: -(a - b)*c becomes +(b - a)*c. Without such a difference
+    the term is returned unchanged.
+    """
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return the negative of a product, with one difference among its factors reversed; None if there is none."""
+    """Return the negative of a product, with one difference among its factors reversed: (b - a)*c for (a - b)*c.
+
+    Return None if no factor is a difference; then a negation would cost an operation.
+    """
     if node[0] == "-":
         return negative(node)
     if node[0] != "*":
@@ -49,14 +56,14 @@ def _with_difference_turned(node: Node) -> Node | None:
 
 
 def _terms(node: Node) -> list[tuple[int, Node]]:
-    """Return the terms of nested sums and differences, each with its sign."""
+    """Return the terms of a sum as pairs (sign, term): [(1, a), (-1, b), (1, c)] for (a - b) + c."""
     if node[0] not in "+-":
         return [(1, node)]
     return [*_terms(node[1]), (1 if node[0] == "+" else -1, node[2])]
 
 
 def summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return the sum of ``first`` and signed terms; positive terms come before negative terms."""
+    """Return the tree of ``first`` plus the ``terms``, which are pairs (sign, term); positive terms are added first."""
     for sign, term in sorted((_turned(*each) for each in terms), key=lambda item: item[0] < 0):
         first = ("+" if sign > 0 else "-", first, term)
     return first

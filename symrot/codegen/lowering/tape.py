@@ -16,9 +16,10 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One operation of a program: ``+ - * / neg``, a function of :mod:`symrot.formula.tree`, a number or a symbol.
+    """One entry of a tape: an operation, a call, a number, or an input.
 
-    ``operands`` are indices of earlier operations.
+    ``kind`` is ``+ - * / neg``, the name of a function such as ``sin``, ``number`` or ``symbol``. ``operands`` are the
+    indices of earlier entries; ``value`` is the Fraction of a number or the name of a symbol.
     """
 
     kind: str
@@ -33,7 +34,7 @@ class Tape(NamedTuple):
     outputs: tuple[int, ...]
 
     def of(self, output: int) -> list[int]:
-        """Return the indices of the operations that one output needs, in the order of computation."""
+        """Return the indices of the operations that output number ``output`` needs, in the order of computation."""
         needed = {self.outputs[output]}
         for index in range(self.outputs[output], -1, -1):
             if index in needed:
@@ -73,9 +74,9 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape that computes the named outputs of a program and the additional formulas ``more``.
+    """Return the tape (list of single operations) of the named ``outputs`` of a program, and of the formulas ``more``.
 
-    The additional formulas may contain inputs and outputs of the program.
+    The formulas ``more`` may contain inputs and outputs of the program; each becomes a further output of the tape.
     """
     writer = _Writer()
     formulas = dict(program.outputs)
@@ -89,7 +90,7 @@ def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ())
 
 
 def _trimmed(tape: Tape) -> Tape:
-    """Return a tape without the operations that no output needs."""
+    """Return a tape for the same outputs without the operations that none of them needs."""
     used = sorted({index for output in range(len(tape.outputs)) for index in tape.of(output)})
     place = {old: new for new, old in enumerate(used)}
     operations = (tape.operations[old] for old in used)

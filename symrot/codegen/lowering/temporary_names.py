@@ -29,7 +29,11 @@ RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "time_t", "and_eq", "or_
 
 @dataclass(frozen=True)
 class _Product:
-    """A coefficient times powers of symbols, in the order in which they appear; divisors have negative powers."""
+    """A product from which a name is built: a coefficient times powers of symbols, in the order in which they appear.
+
+    Divisors have negative powers: ``2*a/b^2`` has the coefficient 2 and the powers (a, 1), (b, -2), its name is
+    ``two_a_over_b_sq``.
+    """
 
     coefficient: Fraction
     powers: tuple[tuple[str, int], ...]
@@ -43,7 +47,10 @@ class _Product:
         return _Product(coefficient, tuple((symbol, power) for symbol, power in powers.items() if power))
 
     def name(self) -> str | None:
-        """Return a name such as ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``; None if a coefficient has no word."""
+        """Return a name such as ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``, or None if there is no such name.
+
+        There is none for a mere number, nor if the table WORDS has no word for the coefficient.
+        """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []
         word = "" if divisor else WORDS.get(size)
@@ -106,12 +113,12 @@ def _numbered(stem: str) -> Iterable[str]:
 
 
 def _noun(node: Node) -> str:
-    """Return the last word of the name of a temporary: the name of the function that it calls, or ``term``."""
+    """Return the word that ends a name such as ``domega_1_term_2``: ``term``, or the name of the called function."""
     return NOUNS.get(node[1], str(node[1])) if node[0] == "call" else "term"
 
 
 def _first_outputs(program: Program) -> dict[str, str]:
-    """Return, for each temporary, the first output that needs it, directly or through other temporaries."""
+    """Return a mapping from each temporary to the first output that needs it, directly or through other temporaries."""
     first: dict[str, str] = {}
     formulas = dict(program.temporaries)
     for output, node in program.outputs:
@@ -125,9 +132,9 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of powers of symbols, or None if the formula is not such a product.
+    """Return a formula as a product of powers of symbols, or None if it is not one, as for a sum or a call.
 
-    Temporaries that are products themselves are replaced by their factors.
+    ``products`` holds the temporaries that are products themselves; they are replaced by their factors.
     """
     kind = node[0]
     if kind == "number":
@@ -146,7 +153,11 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name for a formula, composed of the names in the formula, or None if there is no short name."""
+    """Return a name composed of the names in a formula, such as ``sin_theta`` or ``A_minus_B``; None if none is short.
+
+    ``product`` is the formula as a product, or None if it is not one; ``products`` holds the products among the
+    temporaries.
+    """
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):
@@ -161,7 +172,7 @@ def _structural_name(node: Node, product: _Product | None, products: Mapping[str
 
 
 def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return the name of one term of a sum (a number, a symbol or another formula); None if no short one exists."""
+    """Return the name of one term of a sum, such as ``one``, ``A`` or ``two_q1``; None if it has no short name."""
     if node[0] == "number":
         word = "one" if node[1] == 1 else WORDS.get(node[1])
         return word or None
@@ -172,7 +183,7 @@ def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
 
 
 def _name_of_sum(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return a name such as ``A_minus_B`` for a sum of few terms, or None for a sum of more terms."""
+    """Return a name such as ``A_minus_B`` for a sum; None if it has many terms or one of them has no short name."""
     terms: list[tuple[str, Node]] = []
     while node[0] in ("+", "-"):
         terms.insert(0, ("plus" if node[0] == "+" else "minus", node[2]))

@@ -26,7 +26,11 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """Those texts in the head comment of an emitted file that do not follow from the program, such as its title."""
+    """Texts in the head comment of an emitted file that do not follow from its program.
+
+    ``title`` says what the kernel computes, ``domain`` for which inputs it is valid, ``derivation`` which page derives
+    it, ``command`` which command prints the file. ``contract`` holds further lines as pairs (heading, text).
+    """
 
     title: str
     domain: str
@@ -37,7 +41,7 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return a text that can be placed inside a comment or docstring: it neither ends it nor contains a trigraph.
+    """Return a text that is safe inside a comment or docstring: no mark that ends it, no trigraph, ASCII alone.
 
     Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
     ``<U+00E9>``: the checker of certified C accepts only ASCII, and compilers warn about characters that reverse the
@@ -71,13 +75,13 @@ def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Return names separated by commas, or the first and the last one if all do not fit on a line."""
+    """Return names separated by commas, such as ``q0, q1, q2``; if they exceed a line, ``first .. last``."""
     every = ", ".join(names)
     return every if len(every) <= WIDTH else f"{names[0]} .. {names[-1]}"
 
 
 def _arguments(arguments: Iterable[Argument]) -> list[str]:
-    """Return the lines of the table of arguments, with aligned columns."""
+    """Return the lines of the table of arguments in a head comment: role and name, components, unit, meaning."""
     rows = [row for argument in arguments for row in _rows(argument)]
     widths = [min(max(len(row[column]) for row in rows), WIDEST) for column in range(3)]
     lines = []

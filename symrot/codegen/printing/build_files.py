@@ -175,7 +175,7 @@ Libs: -L${libdir} -lsymrot -lm
 
 
 def build_files() -> dict[str, str]:
-    """Return the texts of the build files for a folder of C kernels, by file name."""
+    """Return the texts of the build files for a folder with all C kernels: a mapping from file name to text."""
     clang = " ".join(flag for flag in FLAGS if "tree" not in flag)
     major, minor, *_ = __version__.split(".")
     texts = {

@@ -41,34 +41,40 @@ SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has re
 
 @dataclass(frozen=True)
 class Real:
-    """A floating-point type of C: its name, the suffix of its functions and literals, and its precision."""
+    """A floating-point type of C.
+
+    Its name (``type``), the suffix of its functions (as in ``sinf``), and its precision.
+    """
 
     type: str
     suffix: str
     precision: str
 
     def literal(self, value: Fraction) -> str:
-        """Return the shortest C literal that stands for the number of this type that is nearest to a value."""
+        """Return the shortest C literal, such as ``0.1`` or ``0.1f``, of this type's number nearest to ``value``."""
         digits = _shortest_float(value) if self.suffix else repr(float(value))
         return (digits if "." in digits or "e" in digits or "n" in digits else f"{digits}.0") + self.suffix
 
     @cached_property
     def functions(self) -> dict[str, str]:
-        """The C names, for this type, of all functions that kernels call, such as ``sinf`` for sin in float."""
+        """The C names, for this type, of all functions that kernels call: ``sin`` is ``sinf`` for float."""
         own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
         in_c = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
         return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of all functions that batches call; for moderate angles ``symrot_math.h`` replaces <math.h>."""
+        """The C names of all functions that batches call: those of ``symrot_math.h`` for sine, cosine and arc tangent.
+
+        They are valid for moderate angles only; functions without such a version keep their names.
+        """
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
     @property
     def bits(self) -> str:
-        """The unsigned integer type of C with the same number of bits."""
+        """The unsigned integer type of C with as many bits as this type, such as ``uint64_t`` for double."""
         return "uint32_t" if self.suffix else "uint64_t"
 
 
@@ -91,13 +97,14 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression, with brackets that preserve the order of evaluation.
 
-    If ``near`` is true, the functions of ``symrot_math.h`` are called, which are valid for moderate angles only.
+    If ``near`` is true, calls such as sin become functions of ``symrot_math.h``, which compilers vectorise but which
+    are valid for moderate angles only; otherwise functions of <math.h>. ``real`` is the type of all numbers.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
 def c_arguments(program: Program, real: Real = DOUBLE) -> str:
-    """Return the parameter list of the C function for one sample."""
+    """Return the parameter list of the C function for one sample: ``double t, const double q[4], double dcm[9]``."""
     return ", ".join(_declared(argument, real) for argument in program.signature.arguments if argument.size)
 
 
@@ -122,7 +129,10 @@ def _used(program: Program) -> set[str]:
 
 
 def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
-    """Return the lines of ``head = formula;``, broken after operators if one line is too long."""
+    """Return the lines of the C statement ``head = formula;``, broken after operators if one line is too long.
+
+    ``mark`` is the sign between head and formula: ``=`` or, for example, ``+=``.
+    """
     line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
         return [line]
@@ -130,12 +140,12 @@ def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[st
 
 
 def _index_of_one(index: int) -> str:
-    """Return the C index of a component in the array of one sample."""
+    """Return the C index of component ``index`` of an argument in the function for one sample: the number itself."""
     return str(index)
 
 
 def _index_in_batch(index: int) -> str:
-    """Return the C index of a component of sample k in the array of a batch of n samples."""
+    """Return the C index of component ``index`` of sample k, such as ``2*n + k``, in the function for n samples."""
     return ("k", "n + k")[index] if index < 2 else f"{index}*n + k"
 
 
@@ -196,7 +206,10 @@ def _computed_in_turn(program: Program) -> list[Argument]:
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names already used in the C code of a batch; new temporaries must have other names."""
+    """Return the names that the C code of a batch already uses for arguments, temporaries, functions and loops.
+
+    A result that is stored in a new variable must have another name.
+    """
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -205,7 +218,11 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove from ``waiting`` all statements on which the values ``needed`` depend, and return them in order."""
+    """Remove from ``waiting`` the statements that compute the values ``needed``, and return their lines in order.
+
+    ``waiting`` maps each value that is not yet computed to (names that its statement needs, lines of the statement).
+    The statements on which these statements depend are included.
+    """
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -224,7 +241,7 @@ def _silenced(program: Program, indent: str) -> list[str]:
 
 
 def c_name(kernel: str, real: Real = DOUBLE) -> str:
-    """Return the name of a kernel's function in C: every global name begins with ``symrot_``."""
+    """Return the name of a kernel's function in C, such as ``symrot_quaternion_dcm``; with the suffix f for floats."""
     return f"symrot_{kernel}{real.suffix}"
 
 
@@ -246,7 +263,10 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain."""
+    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain.
+
+    The definition evaluates one of two formulas, after a comparison. It serves the function for one sample.
+    """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -328,11 +348,12 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return one program for each output argument if separate loops are faster, otherwise a list of the whole program.
+    """Return the programs for which a batch gets separate loops.
 
-    Separate loops are faster if the whole program accesses more arrays than processors prefetch and each part does not,
-    provided that no operation is done twice and the number of accessed arrays grows by at most a fifth. Programs with
-    sines are not split, because sines take longer than memory access.
+    One for each output argument, or the whole program alone. Separate loops are faster if the whole program accesses
+    more arrays than processors prefetch and each part does not, provided that no operation is done twice and the number
+    of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines take longer than
+    memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
@@ -345,7 +366,7 @@ def _split(program: Program) -> list[Program]:
 
 
 def _part(program: Program, output: Argument) -> Program:
-    """Return the part of a program that computes one output argument."""
+    """Return the program that computes the one output argument ``output``, with only the temporaries that it needs."""
     own = {name for name, *_ in output.components}
     outputs = tuple((name, node) for name, node in program.outputs if name in own)
     needed = set().union(*(names(node) for _, node in outputs))
@@ -359,7 +380,7 @@ def _part(program: Program, output: Argument) -> Program:
 
 
 def _streams(program: Program) -> int:
-    """Return the number of arrays that a loop over samples reads or writes."""
+    """Return the number of arrays, one per component, that a batch loop reads or writes; unused inputs do not count."""
     used = _used(program)
     moved = [a for a in program.signature.arguments if a.name != "p"]
     return sum(a.role == "out" or name in used for a in moved for name, *_ in a.components)
@@ -393,7 +414,7 @@ def _loop(
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with its inputs renamed as ``names`` says."""
+    """Return the program with other names for some inputs: ``names`` maps the old to the new."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
@@ -457,7 +478,10 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
 
 
 def with_head(program: Program, description: Description, functions: str) -> str:
-    """Return the C text of a kernel: its head comment, then ``functions``, the result of :func:`c_functions`."""
+    """Return the C file of a kernel: its head comment from ``description``, then ``functions``.
+
+    ``functions`` is the result of :func:`c_functions`.
+    """
     return "\n".join([*banner(program, description, "/*", " *", " */"), functions])
 
 

@@ -101,7 +101,11 @@ def _switch(
     ends: Sequence[str],
     kind: str = "double",
 ) -> list[str]:
-    """Return the body of a C function with one case per event, without the return statement for an unknown event."""
+    """Return the lines of a C function body: ``switch (which)`` with one case per event function.
+
+    Case k contains the definitions ``texts[k]`` of type ``kind``, then the lines ``ends``, in which ``{last}`` stands
+    for the index of the result of ``tapes[k]``. ``head`` comes first. The caller adds the return for an unknown event.
+    """
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
@@ -110,9 +114,10 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return the range (first, last + 1) of the states on which a formula depends.
+    """Return (first, last + 1), the range of indices of the ``states`` on which the formula of a tape depends.
 
-    It is extended to whole blocks: groups of states, such as the quaternion, that share one error.
+    The range is extended to whole blocks, groups of states (bounded by ``edges``) that share one error, such as the
+    quaternion. It is (0, 0) if the formula depends on no state.
     """
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
@@ -130,7 +135,11 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return two C definitions: of the value of an operation, and of the bound of its rounding error."""
+    """Return two C definitions for operation ``index`` of a tape: its value ``v3``, and the bound ``e3`` of its error.
+
+    ``places`` maps inputs to C, such as ``y[2]``; ``known`` maps those inputs whose error is known to the C expression
+    of the error. Other inputs have the rounding error of one operation.
+    """
     v, e = f"v{index}", f"e{index}"
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
@@ -158,7 +167,11 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
+    """Return the C expression for the enclosure of one operation: a call of a function of :file:`event_enclosures.h`.
+
+    ``kind`` is the type of enclosure, in the names of C, and ``around`` the C function that makes one from a centre and
+    a radius. ``places`` maps inputs to C; ``known`` maps the states to their errors.
+    """
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

@@ -44,7 +44,10 @@ def _expression(node: Node) -> str:
 
 
 def _needed(program: Program) -> list[str]:
-    """Return the functions, such as sinc, that a program or one of their derivatives calls."""
+    """Return the functions, such as sinc, that JAX lacks and the program needs.
+
+    Its calls, and those in derivatives of them.
+    """
     needed = dict.fromkeys(called(program))
     for name in SLOPES:  # each is before its derivative
         if name in needed:

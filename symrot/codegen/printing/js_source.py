@@ -57,7 +57,10 @@ def _own_function(name: str) -> list[str]:
 
 
 def _unpacked(argument: Argument, used: set[str]) -> list[str]:
-    """Return the statements that read the components of an input argument; a scalar argument needs no statement."""
+    """Return JavaScript statements such as ``const q0 = q[0];`` for the ``used`` components of an array argument.
+
+    A scalar argument needs no statement.
+    """
     if argument.is_scalar:
         return []
     return [
@@ -92,7 +95,7 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
 
 
 def js_functions(*programs: Program) -> list[str]:
-    """Return the lines of the functions, such as sinc, that programs call and JavaScript does not have, each once."""
+    """Return the lines that define, each once, the functions that programs call and JavaScript lacks, such as sinc."""
     needed = dict.fromkeys(name for program in programs for name in _called(program))
     return [line for name in needed for line in (*_own_function(name), "")]
 

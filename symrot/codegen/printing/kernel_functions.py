@@ -27,7 +27,7 @@ _CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
 
 
 def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
-    """Yield the function name and the arguments of every call in a program, inner calls first."""
+    """Yield (function name, arguments) of every call in a program's formulas; calls inside arguments come first."""
 
     def visit(node: Node) -> Iterator[tuple[str, tuple[Node, ...]]]:
         for child in children(node):
@@ -40,15 +40,19 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the distinct formulas of all angles whose sine or cosine a program computes.
+    """Return the formulas of all angles whose sine or cosine a program computes, each once.
 
-    Functions that call sine or cosine, such as sinc, count too.
+    The argument of a function that calls sine or cosine, such as sinc, counts too. Batches test whether these angles
+    are in the range of ``symrot_math.h``.
     """
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
 def without_branches(program: Program) -> bool:
-    """Return whether a program calls a function for which ``symrot_math.h`` contains a version without branches."""
+    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` contains without branches.
+
+    Its C file then includes that header for batches, which compilers can vectorise.
+    """
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
@@ -62,7 +66,10 @@ def called(program: Program) -> list[str]:
 
 
 def series(coefficients: Iterable[Fraction], variable: str) -> Node:
-    """Return the formula of a polynomial by Horner's rule; ``coefficients`` begin with the lowest power."""
+    """Return the formula of a polynomial in the symbol ``variable`` by Horner's rule, such as ``a + x*(b + x*c)``.
+
+    The ``coefficients`` begin with the lowest power.
+    """
     first, *rest = reversed(tuple(coefficients))
     node: Node = ("number", first)
     for coefficient in rest:
@@ -71,10 +78,11 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 
 
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
-    """Return the definition of a function that <math.h> lacks, such as sinc: its parameters, temporaries and result.
+    """Return the definition of a function that <math.h> lacks, such as sinc, as (parameters, temporaries, choice).
 
-    The result is a choice between two formulas, as (relation, left, right, then, else): the formula ``then`` if the
-    relation between ``left`` and ``right`` holds, otherwise ``else``.
+    ``choice`` is (relation, left, right, then, else): the function has the value ``then`` if the relation between
+    ``left`` and ``right`` holds, otherwise ``else``. For sinc(x) it chooses between the Taylor series near zero and the
+    quotient, or between the limit and the quotient. ``precision`` determines the number of Taylor coefficients.
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]

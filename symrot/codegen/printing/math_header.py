@@ -53,9 +53,9 @@ def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return the ``count`` coefficients of the polynomial that is nearest to a power series for 0 <= t <= ``largest``.
+    """Return ``count`` coefficients of a polynomial near the power series ``series`` for 0 <= t <= ``largest``.
 
-    Nearest means: the error, multiplied by t, is about as small as possible.
+    Of all such polynomials it has about the smallest error times t. The coefficients begin with the lowest power.
     """
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
@@ -73,7 +73,11 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return a list of numbers whose sum is pi/2: all have few bits except the last one, which has full precision."""
+    """Return the parts of pi/2 that are subtracted from an angle one after the other: numbers whose sum is pi/2.
+
+    All parts have so few bits that their products with the number of quarter turns are exact, except the last part,
+    which is the rest. ``precision`` is that of double or float.
+    """
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         parts.append(_leading(rest, bits))
@@ -100,7 +104,7 @@ def _horner(coefficients: tuple[Fraction, ...], real: Real) -> str:
 
 
 def _wrapped(head: str, formula: str) -> list[str]:
-    """Return the lines of ``head = formula;``, broken before brackets if one line is too long."""
+    """Return the lines of the C statement ``const head = formula;``, broken after plus signs if it is long."""
     pieces = formula.split(" + ")
     lines, line = [], f"    const {head} = {pieces[0]}"
     for piece in pieces[1:]:
@@ -113,7 +117,11 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the C statements that compute the remainder ``high + low`` of x, its square t, and the multiple."""
+    """Return the C statements that reduce an angle x: they subtract the nearest multiple of pi/2.
+
+    They define the remainder as a sum ``high + low``, its square t, and the multiple, whose last bits select the
+    quadrant.
+    """
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [

@@ -28,7 +28,10 @@ _NAMES["copysign"] = "np.copysign"
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the Python definition of a function, such as sinc, that NumPy lacks; it evaluates both alternatives."""
+    """Return the Python definition of a function, such as sinc, that NumPy lacks.
+
+    For arrays it evaluates both of its formulas, and ``where`` selects one for each element.
+    """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
     high = name in REMOVABLE and REMOVABLE[name].power > 3  # its quotient overflows next to zero, where it is not used

@@ -27,13 +27,17 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if the rates of the auxiliary states contain too many new quantities, or do not have the required form."""
+    """Raised if no auxiliary states can be used: their rates contain too many new quantities or lack the required form.
+
+    :func:`with_companions` then returns the system unchanged.
+    """
 
 
 class _Term(NamedTuple):
-    """One term of a sum: ``number * constant * companion * state``.
+    """One term of a rate: ``number * constant * companion * state``, where a companion is an auxiliary state.
 
-    ``companion`` is the index of an auxiliary state and ``state`` that of a state; None stands for the factor 1.
+    ``companion`` and ``state`` are indices of auxiliary states and of states; None stands for the factor 1.
+    ``constant`` is a formula that does not change during the motion.
     """
 
     companion: int | None
@@ -65,7 +69,11 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 class _Closure:
-    """A Taylor system together with the auxiliary states that occur in its rates, or in the rates of these states."""
+    """A Taylor system and the auxiliary states that replace functions of the attitude in its rates.
+
+    Rates of auxiliary states may need further ones; :meth:`result` adds these until none is new (the set is closed).
+    Quantities are polynomials whose variables are numbered: states, functions of ``a t + b``, and constants.
+    """
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -92,7 +100,10 @@ class _Closure:
         return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula as a polynomial, in which each part that is not a polynomial is a variable."""
+        """Return a constant formula as a polynomial.
+
+        Each part that is not a polynomial, such as a root, is a variable.
+        """
         if node[0] == "number":
             return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
@@ -105,7 +116,10 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return the polynomial in states, functions of time and constants that equals a series, or None."""
+        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants.
+
+        Return None if it is not such a polynomial, as for a quotient.
+        """
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None
@@ -122,7 +136,10 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return the polynomial that equals a sum of series, or its part with the operands ``only``, or None."""
+        """Return a series of the rule ``sum`` as a polynomial, or the part with the operands ``only``.
+
+        Return None if an operand is not a polynomial.
+        """
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
@@ -160,14 +177,18 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a polynomial has degree 2 or more in the attitude and contains no other state."""
+        """Return whether a polynomial can be an auxiliary state, or a sum of such states.
+
+        It must have degree 2 or more in the components of the quaternion, and contain no other state. None, which
+        stands for a quantity that is not a polynomial, gives False.
+        """
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
         return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
-        """Return the degree of a monomial in the components of the attitude."""
+        """Return the degree of a monomial in the components of the quaternion; other variables do not count."""
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
@@ -234,9 +255,9 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Search a series and its operands for polynomials of the attitude; store their replacements.
+        """Search series ``i`` and its operands for polynomials of the attitude, and replace them by auxiliary states.
 
-        ``self.replaced`` maps a series to the terms with auxiliary states that replace it.
+        ``self.replaced`` maps a series to the terms that replace it.
         """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
@@ -280,7 +301,10 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula for an auxiliary state at the start of a step; terms are grouped by functions of time."""
+        """Return the formula of states and t from which a step computes an auxiliary state, given as a polynomial.
+
+        Terms with the same functions of time are put in one bracket.
+        """
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
@@ -330,7 +354,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the operands of a series that are not replaced by auxiliary states."""
+        """Return those operands of a sum that no auxiliary state replaces."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -353,7 +377,10 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series of a sum of weighted series, weighted auxiliary states and a constant."""
+        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
+
+        ``pairs`` holds (index of a series, weight).
+        """
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))

@@ -15,7 +15,10 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """State of one computation: how constants and functions are evaluated, and the coefficients so far."""
+    """One computation of coefficients.
+
+    The values of inputs, the functions for this kind of number, the coefficients so far.
+    """
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
@@ -30,12 +33,16 @@ def coefficients(
     functions: Mapping[str, Callable[..., Any]] | None = None,
     number: Callable[[Fraction], Any] = lambda value: value,
 ) -> list[list[Any]]:
-    """Return the Taylor coefficients 0 to ``order`` of every state, computed with any kind of number.
+    """Return the Taylor coefficients 0 to ``order`` of every state, in a list per state, with any kind of number.
 
     Parameters
     ----------
+    system : Recurrences
+        The recurrences of the right-hand side.
+    order : int
+        The highest coefficient.
     values : mapping
-        Values of states, parameters and t, by name.
+        Values of states, parameters and t, by name, at the centre of the expansion.
     functions, number
         As for :func:`symrot.formula.tree.evaluate`.
 

@@ -42,7 +42,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """The convolutions that are summed up in one C variable, each with its sign."""
+    """A C variable that sums up several convolutions: ``terms`` holds pairs (sign, convolution)."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -90,7 +90,10 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the number of multiplications in the convolutions of one Taylor step of one trajectory."""
+    """Return the number of multiplications in one Taylor step of one trajectory, as a measure of its cost.
+
+    Only those in convolutions count.
+    """
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
     return int(sum(shares) * order * (order + 1) / 2)
@@ -156,7 +159,10 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return the C expression of a positive constant: a literal, or an array element for a formula."""
+        """Return the C expression of a positive constant.
+
+        A literal for a number, ``c[k]`` for a formula of parameters.
+        """
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
@@ -167,9 +173,11 @@ class _Jet:
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a slot (a sum of convolutions).
+        """Return the C expression for coefficient n of a slot, which is a sum of convolutions.
 
-        It is the sum of two independent chains of operations, so that neither chain waits for all newest coefficients.
+        ``sums`` is the first letter of the C variables with the sums over known coefficients; the newest terms are
+        added. The result is the sum of two independent chains of operations, so that neither waits for all newest
+        coefficients.
         """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
@@ -185,7 +193,11 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return the C expression of a weighted sum of series times a factor; the newest terms are added last."""
+        """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty.
+
+        With ``first``, for coefficient 0, the constant of the sum is included. Terms that are computed last are added
+        last.
+        """
         value = ""
         *weights, constant = s.weights
         if first and constant is not None and constant != ("number", 0):
@@ -219,7 +231,11 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- series
 
     def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements that set ``v{i}`` to coefficient n of series i."""
+        """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``.
+
+        ``phase`` is ``first``, ``second`` or ``later`` (see the class), ``sums`` the letter of the variables with known
+        sums.
+        """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
             return [f"{name} = {self.sum(s, phase == 'first')};"]
@@ -324,7 +340,7 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series from which coefficient n of another series is computed, as cosine for sine."""
+        """Return the series that the coefficients of another series need, such as cosine for sine of ``a t + b``."""
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
@@ -448,19 +464,28 @@ class _Jet:
 
 
 def _plus(value: str, sign: int, factors: str) -> str:
-    """Return the C expression of a value plus or minus a product; an empty text as value stands for zero."""
+    """Return the C expression of ``value`` plus or minus the product of ``factors``, given as ``"u, v"``.
+
+    An empty ``value`` stands for zero.
+    """
     if value:
         return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
     return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
 
 
 def _add(name: str, sign: int, factors: str) -> str:
-    """Return the C statement that adds a product to the variable ``name``, or subtracts it if ``sign`` is negative."""
+    """Return the C statement that adds a product (``factors``, as ``"u, v"``) to the variable ``name``.
+
+    It subtracts the product if ``sign`` is negative.
+    """
     return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
 
 
 def _called(s: Series, first: int) -> str:
-    """Return the C call of a function, such as exp, with coefficient 0 of its arguments."""
+    """Return the C call that computes coefficient 0 of a function such as exp from coefficient 0 of its arguments.
+
+    The arguments are the operands of the series from number ``first`` on.
+    """
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -28,9 +28,10 @@ IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the names of the outputs that double-double arithmetic can compute.
+    """Return the names of those ``outputs`` of a program whose formulas contain only + - * / and square roots.
 
-    Their formulas contain only + - * / and square roots.
+    Double-double arithmetic can compute these; conserved quantities with other functions are not restored by
+    projection.
     """
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
@@ -89,7 +90,7 @@ def _in_pairs(op: Operation, places: dict[str, str]) -> str:
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
-    """Return the C statements that compute the gradient of one output by reverse differentiation."""
+    """Return the C statements that compute the derivatives of one output by all states, by reverse differentiation."""
     needed = tape.of(output)
     varying = _varying(tape, needed, set(states))
     terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}
@@ -117,7 +118,11 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return, for each operand of an operation, the C expression that it adds to the derivative of that operand."""
+    """Return C expressions, one per operand of an operation, for what it adds to the derivative of that operand.
+
+    ``own`` is the C name of the derivative of the operation's result, whose index is ``index``. For the product
+    ``v1*v2`` these are ``own*v2`` and ``own*v1`` (reverse differentiation).
+    """
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]

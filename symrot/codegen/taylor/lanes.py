@@ -24,7 +24,10 @@ ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The position of a series: its row, its lane in the row, and a sign as factor (0 gives the value 0)."""
+    """The place of a series.
+
+    Number of its row, lane in this row, and a sign (1, -1, or 0 for the value zero) as factor.
+    """
 
     sign: int
     row: int
@@ -47,7 +50,7 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A sum of columns, multiplied by one constant per lane. A column is the convolution of two series in each lane."""
+    """A sum of columns (vectors of four convolutions), multiplied by one constant per lane."""
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
@@ -107,7 +110,10 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return a system in which products that occur together in several sums form one sum of their own."""
+    """Return a system in which products that occur together in several sums form one sum of their own.
+
+    If two rates contain ``a*b - c*d``, this difference becomes a series, and both rates refer to it.
+    """
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -174,7 +180,7 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of the products that are computed inside the sums that contain them.
+        """Return the indices of those products that are computed inside the sums that contain them, without a row.
 
         They occur in at most ``most_uses`` sums and in no other series.
         """
@@ -186,7 +192,10 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return the number of successive computations that coefficient n of a series needs; it is 0 for states."""
+        """Return how many computations, one after the other, coefficient n of series ``i`` needs; it is 0 for states.
+
+        Only series of equal level can be computed together in one row.
+        """
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # operands used up to n - 1 only
@@ -220,10 +229,9 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return the key by which series with the same recurrence rule are sorted.
+        """Return a sort key by which similar series of equal rule come together, so that they share rows.
 
-        Exponentials come after pairs such as sine and cosine; sums come in the order of decreasing numbers of
-        products.
+        Exponentials come after pairs such as sine and cosine; sums come in the order of decreasing numbers of products.
         """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
@@ -232,9 +240,9 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return a pack (vector of four series) of up to four pairs (sign, series).
+        """Return the pack (vector of four series) of up to four ``items``, each a pair (sign, series).
 
-        A lane without a pair (None) gets a series with which the pack costs no extra time.
+        A lane without an item (None) gets a series with which the pack costs no extra time.
         """
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
@@ -246,7 +254,10 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the position of a series in its row: the given lane if it holds a copy, otherwise the first lane."""
+        """Return the position of a series in its row.
+
+        In the given lane if a copy is there, otherwise in its first lane.
+        """
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
@@ -330,10 +341,10 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield the indices of columns that contain all products of each lane; each column has one product per lane.
+        """Yield the indices of columns that together contain all products of each lane, one per lane and column.
 
-        While all lanes have products with a common factor, these products form a column, in which the factor is
-        broadcast.
+        ``lanes`` holds for each lane pairs (sign, series of a product). While all lanes have products with a common
+        factor, these products form a column, in which the factor is broadcast.
         """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
@@ -354,9 +365,10 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return the first series that is a factor in every lane, and can therefore be broadcast to all lanes.
+        """Return a series that is a factor of some product in every lane, so that it can be broadcast to all lanes.
 
-        Return None if there is no such series, or only one lane.
+        Each lane is a list of products (sign, factor, factor). Return None if there is no such series, or only one
+        lane.
         """
         if len(lanes) < 2:
             return None
@@ -390,6 +402,9 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return (weight, products); if the first product is negative, the signs of all of them are changed."""
+    """Return (weight, products) with a positive first product.
+
+    If it is negative, all signs change, that of the weight too.
+    """
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

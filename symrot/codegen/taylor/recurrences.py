@@ -75,7 +75,10 @@ POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of polynomials; other 
 
 
 class _Linear(NamedTuple):
-    """A linear form: a constant plus a sum of series with constant weights."""
+    """A linear form, ``constant + sum(weight * series)``: ``terms`` maps indices of series to constant weights.
+
+    A ``constant`` None stands for 0.
+    """
 
     constant: Node | None
     terms: dict[int, Node]
@@ -262,15 +265,17 @@ class _Builder:
         return self.add(Series("theta", (series,)))
 
     def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
-        """Return the constants (a, b) if a linear form equals a t + b, otherwise None."""
+        """Return the constants (a, b) if a linear form equals a t + b, where b is None for 0; otherwise return None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Append the Taylor series of functions whose derivatives contain each other; return the first index.
+        """Add the Taylor series of functions whose derivatives contain each other, as sine and cosine.
 
-        Each function is given by its name and the sign of its derivative. ``partners`` holds, for each function, the
-        position of the function that its derivative contains: for sine the position of cosine.
+        Return the first index. Each function is given by its name and the sign of its derivative. ``partners`` holds,
+        for each function, the position of the function that its derivative contains: for sine the position of cosine.
+        Functions of ``a t + b`` get the rule ``clock``, others the rule ``driven``. Series that exist are not added
+        again.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -284,7 +289,10 @@ class _Builder:
         return self.known[key]
 
     def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Return sin, cos, sinh or cosh of an argument as a series; the other function of the pair is added too."""
+        """Return the function ``name`` (sin, cos, sinh or cosh) of ``argument`` as a linear form with one series.
+
+        The other function of the pair is added too, because the derivative of each contains the other.
+        """
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
@@ -350,7 +358,10 @@ class _Builder:
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
-    """Return the system without the series that no rate needs; the series of states remain."""
+    """Return the system without the series that no rate needs, directly or through operands.
+
+    Series of states remain.
+    """
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
     while waiting:
@@ -379,7 +390,10 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a simplified constant formula: numbers combined, a sign moved to the front, factors of 1 removed."""
+    """Return an equal, shorter constant formula.
+
+    Numbers are combined, factors of 1 removed, a sign is moved to the front.
+    """
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])
@@ -401,7 +415,10 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return the sign (1 or -1) of a constant formula, and the formula without this sign."""
+    """Return (sign, formula) whose product is a constant formula.
+
+    (-1, a) for ``-a``, (-1, 2) for -2, otherwise (1, itself).
+    """
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
         return -sign, inner
@@ -411,7 +428,7 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return (number, formula) whose product equals a constant formula."""
+    """Return (number, formula) whose product equals a constant formula: (-2, a) for ``-(2*a)``, (1, a) for ``a``."""
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

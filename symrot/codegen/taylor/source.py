@@ -114,7 +114,7 @@ class _Jet:
         return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
 
     def at(self, pack: Pack, n: str) -> str:
-        """Return the C expression that reads coefficient n of a pack (a vector of four series) from memory."""
+        """Return the C expression that reads coefficient ``n`` (C text) of a pack, a vector of four series."""
         if pack in self.packs:
             return f"k{self.packs[pack]}[{n}]"
         row = f"{self._array(pack[0].row)}[{n}]"
@@ -124,7 +124,10 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a pack (a vector of four series)."""
+        """Return the C expression for the newest coefficients of a pack.
+
+        A variable if one exists, else :meth:`picked`.
+        """
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
@@ -143,9 +146,10 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a column (a vector of four convolutions); empty for zero.
+        """Return the C expression for coefficient n of column ``index``, a vector of four convolutions.
 
-        It is the sum over known coefficients plus the terms k = 0 and k = n.
+        Empty if it is zero. It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the
+        terms k = 0 and k = n.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
@@ -167,9 +171,11 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a vector of four weighted sums of series, times a factor.
+        """Return the C expression for a row of the rule ``sum``.
 
-        Terms that are computed last are added last, so that the other additions need not wait for them.
+        Four weighted sums of series, times ``factor`` if not empty. ``phase`` and ``sums`` are explained in the class
+        and in :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added
+        last, so that the other additions need not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -200,7 +206,10 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of a vector of constants times a factor; only the factor if all constants are 1."""
+        """Return the C expression of a vector of constants times ``factor``; ``factor`` alone if all constants are 1.
+
+        An empty ``factor`` stands for 1, and so does an empty result.
+        """
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -208,7 +217,10 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}`` to coefficient n of the four series in that row."""
+        """Return the C statements that set ``r{number}`` to coefficient ``n`` of the four series in the row ``number``.
+
+        ``phase`` and ``sums`` are explained in the class and in :meth:`column`.
+        """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
@@ -440,19 +452,22 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the C name for the value of a function at an angle ``a t + b``, given the C name ``turn`` of the angle."""
+    """Return the C name of the value of a function, such as sin, at the angle ``a t + b`` with the C name ``turn``."""
     return f"{function}_{turn}"
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return all function calls in a formula."""
+    """Return the function calls in a formula; a call inside the arguments of another call is not listed separately."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]
 
 
 def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
-    """Return a formula in which the function calls are replaced by names."""
+    """Return a formula in which function calls are replaced by symbols.
+
+    ``calls`` maps each call to the name of its symbol.
+    """
     if node in calls:
         return ("symbol", calls[node])
     if node[0] in ("number", "symbol"):

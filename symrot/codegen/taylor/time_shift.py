@@ -29,7 +29,7 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene in which the time t is counted from the epoch, a new constant of the scene.
+    """Return the kernel of a scene with time counted from the epoch, a new constant ``epoch`` of the scene, in s.
 
     Conserved quantities that depend on time are marked as not conserved, because their formulas still contain the
     original time.
@@ -77,7 +77,10 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula in the shifted time, and its coefficients if it is a polynomial of t with constant coefficients."""
+    """A formula in the shifted time (``node``) and, if it is a polynomial of t, its coefficients (``terms``).
+
+    The coefficients are constant formulas, lowest power first; ``terms`` is None for any other formula.
+    """
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
     terms: tuple[Node, ...] | None = None
@@ -134,10 +137,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum in which all terms of the form a t + b are combined, or None if there is nothing to combine.
+        """Return a sum in which all terms of the form a t + b are combined into one.
 
-        Far from t = 0 the constants b may nearly cancel. There is nothing to combine if all terms have this form, if
-        fewer than two have it, or if none of these terms contains the time.
+        Far from t = 0 their b may nearly cancel. Return None if all terms have this form, if fewer than two have it, or
+        if none of these terms contains the time; then nothing is to be combined.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -155,7 +158,10 @@ class _Mover:
         return _Form(gathered)
 
     def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
-        """Yield the terms of a sum as pairs (flag, term); the flag is true if the term is subtracted."""
+        """Yield the terms of nested sums as pairs (subtracted, term).
+
+        ``negative`` says whether the whole sum is subtracted.
+        """
         if node[0] in ("+", "-"):
             yield from self.summands(node[1], negative)
             yield from self.summands(node[2], negative != (node[0] == "-"))
@@ -165,9 +171,10 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return the formula tree of a formula in the shifted time; a polynomial of t is written by Horner's rule.
+        """Return the formula tree of ``form`` in the shifted time; a polynomial of t is written by Horner's rule.
 
-        The coefficients of the polynomial become parameters. ``turns`` means that the value matters only modulo 2 pi.
+        The coefficients of the polynomial become parameters. With ``turns``, the value is an angle in a sine, cosine or
+        tangent, and multiples of 2 pi may be subtracted.
         """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
@@ -201,7 +208,7 @@ class _Mover:
         return ("symbol", self.added[-1][0])
 
     def resolved(self, node: Node) -> Node:
-        """Return a formula in which parameters are replaced by their formulas in terms of physical constants."""
+        """Return a constant formula in terms of physical constants: each parameter is replaced by its formula."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
         if node[0] == "number":
@@ -212,7 +219,7 @@ class _Mover:
 
 
 def _is_shifted(form: _Form) -> bool:
-    """Return whether a formula equals a t + b with b other than zero."""
+    """Return whether a formula equals a t + b with b other than zero, as the factor t - c of a narrow pulse does."""
     return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
 
 
