@@ -51,7 +51,11 @@ class Start(NamedTuple):
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of n initial states near a motion's initial state, which is the first of them."""
+    """Return an ensemble of ``n`` initial states near a motion's initial state, which is the first of them.
+
+    ``name`` is the motion, ``problem`` its equations, and ``stop`` the end time, s. The other initial states are
+    random.
+    """
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -62,7 +66,10 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return reference end states of trajectories from the initial states ``y``, computed by heyoka in long double."""
+    """Return the end states at the time ``stop`` of trajectories from the initial states ``y``, as a reference.
+
+    They are computed by heyoka in long double.
+    """
     import heyoka
 
     real = np.longdouble
@@ -77,7 +84,10 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
 
 
 def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
-    """Return the right-hand side of a motion in heyoka's form; ``real`` converts its numbers."""
+    """Return the right-hand side dy/dt of a motion in heyoka's form, with its constants as numbers.
+
+    ``real`` converts the numbers, for example to long double.
+    """
     import heyoka
 
     names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
@@ -119,7 +129,10 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's batch integrator, one batch after another."""
+    """Return the number of steps and the last states of an ensemble, computed by heyoka's batch integrator.
+
+    A batch has ``width`` trajectories; one batch is computed after another.
+    """
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -131,7 +144,11 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's own ensemble function in one thread."""
+    """Return steps and last states of an ensemble, computed by heyoka's ensemble function in one thread.
+
+    ``propagate`` is this function of heyoka, and ``width`` the number of trajectories that ``integrator`` computes at
+    once.
+    """
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -171,7 +188,10 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
-    """Time all contestants on an ensemble, and return their runs with times and errors."""
+    """Time all contestants on an ensemble, and return their runs with times and errors.
+
+    With ``many``, heyoka also runs through its own ensemble functions, which are made for thousands of trajectories.
+    """
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 
@@ -200,7 +220,7 @@ def _print_table(runs: list[Run], n: int) -> None:
 
 
 def _print_widths(start: Start, rounds: int) -> None:
-    """Print a comparison of SIMD vectors of four and of eight trajectories."""
+    """Print the times of the ensemble ``start`` with SIMD vectors of four and of eight trajectories, for comparison."""
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip

@@ -77,7 +77,10 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return random inputs in a kernel's bounds, one array (size, count) per argument; quaternions have unit norm."""
+    """Return ``count`` random inputs within a kernel's bounds, one array (size, count) per argument.
+
+    Quaternions have unit norm.
+    """
     kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
     for argument in kernel.inputs:
@@ -111,7 +114,10 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return the addresses of the arguments of a kernel in the shared memory."""
+    """Return the addresses of the arguments of the kernel ``name`` in the memory that all contestants share.
+
+    The other arguments are those of :func:`_block`, which reserves this memory.
+    """
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -122,9 +128,9 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C functions that repeat a one-sample function and a batch function, for timing.
+    """Return C functions that call a one-sample function and a batch function many times, so that they can be timed.
 
-    If a tool has no batch function, a loop over its one-sample function is added.
+    If a tool has no batch function (``batch`` is false), a loop over its one-sample function is added.
     """
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
@@ -163,7 +169,10 @@ _REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a
 
 
 def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
-    """Return the C text of a batch function whose loop inlines a one-sample function."""
+    """Return the C text of a batch function whose loop inlines the one-sample function ``name``.
+
+    ``inputs`` and ``outputs`` are the arguments of that function.
+    """
     every = [*inputs, *outputs]
     pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
     lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
@@ -179,7 +188,7 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C functions that repeat heyoka's compiled functions, for one sample and for batches."""
+    """Return C functions that call heyoka's compiled functions many times, for one sample and for batches."""
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
@@ -197,7 +206,10 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum."""
+    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum.
+
+    Its time shows how long the memory access of a kernel takes.
+    """
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -227,7 +239,10 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a timing function for each shape of input (one sample, batches), from a compiled library."""
+    """Return a timing function for each shape of input (one sample, batches), from a compiled library.
+
+    ``shapes`` are names such as ``"cached"``; ``many`` is the number of samples in a large batch.
+    """
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
@@ -246,7 +261,11 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return the timing functions of a kernel in C, and its outputs for the batch that fits in the cache."""
+    """Compile a kernel, and return its timing functions and its outputs for the batch that fits in the cache.
+
+    ``text`` is the C text with its drivers (see :func:`_drivers`). ``prepare`` is called with the loaded library, for
+    tools whose functions need a set-up.
+    """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
@@ -267,9 +286,9 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for a kernel (one per tool, symrot first), and the names of the missing tools.
+    """Return the contestants for the kernel ``name`` (one per tool, symrot first), and the names of the missing tools.
 
-    Raise AssertionError if the outputs of two tools differ.
+    ``many`` is the number of samples in the largest batch. Raise AssertionError if the outputs of two tools differ.
     """
     contestants: list[Contestant] = []
     missing: list[str] = []
@@ -311,7 +330,10 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions and outputs for CasADi's own evaluation, which maps a function over the samples."""
+    """Return the timing functions of CasADi's own evaluation, which maps a function over samples, and its outputs.
+
+    ``function`` is CasADi's function for the kernel ``name``. Only the batch that fits in the cache is timed.
+    """
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -323,7 +345,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
 
 
 def _casadi_text(name: str, function: Any) -> str:
-    """Return CasADi's C code for a kernel, and a C function with the kernel's own arguments that calls it."""
+    """Return the C code that CasADi generates for a kernel, and a C function with symrot's arguments that calls it."""
     import casadi
 
     generator = casadi.CodeGenerator("peer", {"with_header": False})
@@ -372,7 +394,10 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return the number of operations of symrot's kernel, and the smallest number among the other tools."""
+    """Return the number of operations of symrot's kernel, and the smallest number among the other tools.
+
+    The first of the ``contestants`` is symrot.
+    """
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
@@ -380,8 +405,9 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return, for each shape of input, the ratio of symrot's time to the time of the best other tool.
 
-    The least times are compared, except for batches of many samples: their speed is limited by memory, which other
-    processes use too. There the ratio to each other tool is computed in each round; the result is the largest median.
+    The first contestant is symrot. The least times are compared, except for batches of many samples: their speed is
+    limited by memory, which other processes use too. There the ratio to each other tool is computed in each round; the
+    result is the largest median.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
@@ -415,14 +441,17 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 times its time."""
+    """Return, as texts, where symrot needs more operations than the best tool, or more than 1.05 times its time.
+
+    The list is empty if there are none.
+    """
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
-    """Return the operations of a kernel by symrot and by other tools, and the names of the missing tools.
+    """Return the operations of a kernel as a map from tool to operations by kind, and the names of the missing tools.
 
     For derivatives, CasADi also starts from symrot's own program of the values instead of the textbook's formulas.
     """
@@ -443,7 +472,7 @@ def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
 
 
 def _count(names: Sequence[str]) -> None:
-    """Print the operations of kernels by symrot and by the other tools."""
+    """Print the operations of kernels by symrot and by the other tools, and the kernels for which symrot needs more."""
     over, absent = [], set[str]()
     for name in names:
         operations, missing = counts(name)

@@ -16,7 +16,10 @@ _ORIGIN = (0, 0, 0)
 
 
 class HasInertia(Protocol):
-    """The type of objects with a mass (kg), a centre of mass (m) and an inertia tensor about this centre (kg m^2)."""
+    """The type of all objects with mass properties: mass (kg), centre of mass (m), inertia tensor about it (kg m^2).
+
+    :class:`MassProperties` and :class:`symrot.inertia.solids.Solid` are of this type.
+    """
 
     @property
     def mass(self) -> Any: ...
@@ -40,7 +43,10 @@ class MassProperties(NamedTuple):
 
 
 def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
-    """Return the mass properties of a body after a rotation about the origin and a displacement ``at`` (m)."""
+    """Return the mass properties of a body that is first rotated about the origin, then displaced by ``at`` (m).
+
+    ``rotation`` is the matrix that maps components in the body's axes to components in the new axes.
+    """
     turned = tensor.apply(rotation, body.center_of_mass)
     center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
     return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))

@@ -75,7 +75,10 @@ def _positive(value: Any, name: str, where: str) -> Fraction:
 
 
 def _density_node(density: Any, where: str) -> Node:
-    """Parse a density and return its formula; raise InputError if it is a number that is not positive."""
+    """Return the formula tree of a part's density, given as a positive number or as text in x, y, z.
+
+    A number that is not positive raises InputError, which names the place ``where``.
+    """
     if isinstance(density, str):
         node = parse(density, f"{where}.density" if where else "density")
         if node[0] != "number":

@@ -40,7 +40,11 @@ _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """A shape as a map from coordinates to positions (m): the map, its Jacobian, and the limits of the coordinates."""
+    """A shape as a map from coordinates, such as radius and angle, to positions (m): map, Jacobian and limits.
+
+    The Jacobian is volume (area, length) per unit of the coordinates. All are polynomials in coordinates and
+    dimensions.
+    """
 
     position: tuple[Polynomial, ...]
     jacobian: Polynomial
@@ -48,7 +52,10 @@ class Domain(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """The moments of a shape: integrals of 1, x_i and x_i x_j over the shape, weighted by a density."""
+    """The integrals of 1, x_i and x_i x_j over a shape, weighted by a density.
+
+    With the density in kg per m^3 they give the mass, the centre of mass and the inertia tensor.
+    """
 
     zeroth: Any
     first: tuple[Any, ...]
@@ -74,7 +81,11 @@ def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
 
 
 def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, ...]) -> Polynomial:
-    """Return the Jacobian of a map: volume, area or length per unit of the coordinates."""
+    """Return the Jacobian of a map to positions: volume, area or length per unit of the coordinates.
+
+    Three coordinates (a solid) give the determinant of the derivatives; two or one give the root of the Gram
+    determinant.
+    """
     columns = [[component.derivative(c.name) for component in position] for c in coordinates]
     angles = [c.name for c in coordinates if c.angle]
     if len(columns) == 3:
@@ -84,9 +95,10 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return the map of a shape; dimensions that ``known`` contains are inserted as numbers, the others stay symbols.
+    """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials.
 
-    The keys of ``known`` are names from :func:`symrot.inertia.shapes.scalar_names`.
+    Dimensions in ``known`` are inserted as numbers, the others stay symbols; its keys are names from
+    :func:`symrot.inertia.shapes.scalar_names`.
     """
     numbers = known or {}
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
@@ -99,7 +111,10 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
 @cache
 def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
-    """Return the integral of cos^cosines sin^sines from 0 to pi/2, as a rational factor and a power of pi."""
+    """Return the integral of cos^cosines sin^sines from 0 to pi/2, as a rational factor and a power of pi.
+
+    Example: cos^2 has the integral pi/4, so ``_quarter_turn(2, 0)`` is ``(Fraction(1, 4), 1)``.
+    """
     if sines > 1:
         rational, power = _quarter_turn(cosines, sines - 2)
         return rational * Fraction(sines - 1, cosines + sines), power
@@ -110,7 +125,7 @@ def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
 
 
 def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
-    """Return the integral of cos^cosines sin^sines from ``lower * pi/2`` to ``upper * pi/2``."""
+    """Return the integral of cos^cosines sin^sines from ``lower * pi/2`` to ``upper * pi/2``, in terms of ``pi``."""
     total = constant(0)
     for quadrant in range(lower, upper):
         cosine_sign, sine_sign = ((1, 1), (-1, 1), (-1, -1), (1, -1))[quadrant % 4]
@@ -128,7 +143,10 @@ def _quarters(limit: Polynomial) -> int:
 
 
 def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
-    """Return the integral of a polynomial over all coordinates, as a polynomial in the dimensions and ``pi``."""
+    """Return the integral of ``integrand`` over all coordinates, as a polynomial in the dimensions and ``pi``.
+
+    ``limits`` gives each coordinate with its lower and upper limit.
+    """
     for coordinate, lower, upper in limits:
         total = constant(0)
         if coordinate.angle:
@@ -197,7 +215,10 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 
 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
-    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``."""
+    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``.
+
+    They are weighted by ``density``, a polynomial in the coordinates of the map; the default is the density 1.
+    """
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)
     second = [[constant(0)] * 3 for _ in range(3)]

@@ -71,7 +71,10 @@ def _prefix(where: str) -> str:
 
 
 def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
-    """Return eigenvalues and eigenvectors (columns) of a tensor by Jacobi's method (Golub & Van Loan, section 8.5)."""
+    """Return eigenvalues and eigenvectors (columns) of a symmetric tensor by Jacobi's method, with 120 digits.
+
+    Each step makes one entry beside the diagonal zero (Golub & Van Loan, section 8.5).
+    """
     work = [[Decimal(entry.numerator) / Decimal(entry.denominator) for entry in row] for row in tensor]
     vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
     scale = max(abs(entry) for row in work for entry in row)
@@ -101,7 +104,10 @@ def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
 
 
 def _root(tensor: Tensor, value: Decimal) -> Fraction:
-    """Return the exact eigenvalue near ``value`` if it is a fraction of moderate size, otherwise ``value`` itself."""
+    """Return the exact eigenvalue of a tensor near ``value`` if it is a fraction of moderate size.
+
+    Otherwise, for an irrational eigenvalue, return ``value`` itself.
+    """
     approximate = Fraction(value)
     exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
     shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
@@ -125,7 +131,10 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return moments in which negligible ones are set to zero and nearly equal ones to the same number."""
+    """Return principal moments in which negligible ones are set to zero and nearly equal ones to the same number.
+
+    The limit is 2^-200 of their size. The kind of symmetry then follows from exact comparisons.
+    """
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:

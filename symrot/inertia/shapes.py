@@ -37,7 +37,7 @@ class Dimension(NamedTuple):
 
 
 class Coordinate(NamedTuple):
-    """One coordinate of a map, with its limits as formulas in the dimensions.
+    """One coordinate of a shape's map to positions, with its limits as formulas in the dimensions.
 
     ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` fractions from 0 to 1, ``theta, phi`` angles in rad.
     """
@@ -53,7 +53,11 @@ class Coordinate(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A shape of the table: dimensions, conditions, axes and map; ``position`` is empty for point masses."""
+    """A shape of the table: dimensions, conditions such as ``inner < outer``, axes, and map.
+
+    The map gives the position (m) for each value of the coordinates, as three formulas ``position``, which are missing
+    for point masses.
+    """
 
     name: str
     kind: str  # a key of DENSITY_UNITS
@@ -295,9 +299,10 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the dimensions that occur in a shape's map and closed forms.
+    """Return the names of the numbers among a shape's dimensions, as they occur in its formulas.
 
-    :func:`scalars` has their values.
+    A length has its own name. A list of corners gives three names for each: ``x1, y1, z1, x2, ..``. :func:`scalars`
+    returns the values in the same order.
     """
     names: list[str] = []
     for d in shape.dimensions:
@@ -307,9 +312,9 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the dimensions of a shape as a map from name to number.
+    """Return the numbers among the dimensions of a shape as a dict by the names of :func:`scalar_names`.
 
-    Corner n of ``vertices`` gives ``xn``, ``yn``, ``zn``.
+    Example: the corners ``((0, 0, 0), (1, 0, 0), ..)`` of a tetrahedron give ``x1 = 0``, .., ``x2 = 1`` and so on.
     """
     values: list[Any] = []
     for d in shape.dimensions:

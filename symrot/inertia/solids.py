@@ -1,4 +1,4 @@
-"""Mass properties of solids, symbolic in their dimensions, derived by exact integration.
+"""Mass properties of solids, surfaces and curves, symbolic in their dimensions, derived by exact integration.
 
 A shape is given only by its map (:mod:`symrot.inertia.shapes`). The Jacobian, the volume, the mass, the centre of mass
 and the inertia tensor are computed from the map (:mod:`symrot.inertia.integration`) and factored. ``python -m
@@ -57,7 +57,10 @@ _MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbol
 
 @dataclass(frozen=True)
 class Integral:
-    """One integral over a shape: integrand times Jacobian, limits (coordinate, lower, upper), and value."""
+    """One integral over a shape, for a derivation page: integrand times Jacobian, limits, and value.
+
+    ``quantity`` says what it computes; each limit is (coordinate, lower, upper).
+    """
 
     quantity: str
     integrand: Expr
@@ -178,7 +181,7 @@ def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
 
 
 def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a polynomial as a SymPy expression.
+    """Return a polynomial as a SymPy expression, with ``values`` in place of its names.
 
     Names without a value stand for pi, or for cos or sin of a coordinate.
     """
@@ -199,7 +202,10 @@ def _mapped(name: str) -> Domain:
 
 @cache
 def _default_dimensions(name: str) -> dict[str, Symbol]:
-    """Return a map from the name of each number in a shape's map to its default symbol."""
+    """Return the symbols that stand for a shape's dimensions by default, by the names of ``scalar_names``.
+
+    Example: the cone's radius has the symbol R.
+    """
     shape = SHAPES[name]
     plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}
     return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
@@ -208,7 +214,10 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia about the centre of mass per unit mass; the default density is 1."""
+    """Return mass, centre of mass, and inertia about it per unit mass, of a shape with the dimensions ``values``.
+
+    ``density`` is a polynomial in the map's coordinates; without it the density is 1, and the mass is the volume.
+    """
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
         raise InputError("expected a density with a positive mass, got a density with a mass of 0 kg")
@@ -229,13 +238,20 @@ def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, 
 
 @cache
 def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return measure, centre of mass, and inertia per unit mass of a uniform shape, in the default symbols."""
+    """Return measure (volume, area or length), centre of mass, and inertia per unit mass of a uniform shape.
+
+    The dimensions are the default symbols; the result is cached, and :func:`solid` inserts other values.
+    """
     measure, center, specific = _properties(_mapped(name), _default_dimensions(name))
     return _tidy_measure(measure), center, specific
 
 
 def _scalar(value: Any) -> Expr:
-    """Return a dimension or mass as an exact expression; a text may contain the symbols of the table of shapes."""
+    """Return a dimension or mass as an exact expression.
+
+    ``value`` is an expression, a number, or a text, which may contain the symbols of the table of shapes, as in
+    ``"2*R"``.
+    """
     if isinstance(value, Expr):
         return value
     if isinstance(value, str):

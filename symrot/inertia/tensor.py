@@ -102,7 +102,7 @@ def trace(tensor: Any) -> Any:
 
 
 def determinant(tensor: Any) -> Any:
-    """Return the determinant of a tensor."""
+    """Return the determinant of a tensor, three rows of three numbers of any type."""
     first, second, third = matrix(tensor)
     return dot(first, cross(second, third))
 

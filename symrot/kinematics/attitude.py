@@ -43,7 +43,7 @@ def chart(name: str) -> Chart:
 
 
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the parameters of one attitude description as expressions in the parameters of another, shape (n, 1).
+    """Return the parameters of the description ``target`` as expressions in those of ``source``, shape (n, 1).
 
     The conversion goes through the quaternion, to and from which every description can be converted. The direction
     cosine matrix is not among the descriptions: ``chart(name).dcm`` returns it, and

@@ -52,6 +52,8 @@ _NUMBERS = {S.Integers: "n any integer", S.Naturals: "n = 1, 2, ...", S.Naturals
 class SingularSet:
     """The set of real values of one variable at which an expression is zero, computed exactly.
 
+    For a rate matrix the expression is its determinant, and the zeros are the singular points, such as gimbal lock.
+
     Attributes
     ----------
     equation : Expr
@@ -77,7 +79,10 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the singular values in increasing order: those in the first period of 2 pi that contains any."""
+        """Return the singular values in increasing order; of a set with period 2 pi, those of one period.
+
+        It is the first period (from 0 on) that contains any. Example: the set of all n pi gives (0, pi).
+        """
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
             if points is not S.EmptySet:
@@ -97,9 +102,9 @@ class SingularSet:
 
 
 def condition_of(gram: Matrix) -> Expr:
-    """Return the condition number of a rate matrix B from its Gram matrix, ``B^T B`` or ``B B^T``.
+    """Return the condition number of a rate matrix B from ``gram``, its Gram matrix ``B^T B`` or ``B B^T``.
 
-    It is the root of the ratio of the largest to the smallest eigenvalue.
+    It is the square root of the ratio of the largest to the smallest eigenvalue of ``gram``; 1 is the best value.
     """
     values = list(gram.eigenvals())
     return sqrt(cancel(Max(*values) / Min(*values)))
@@ -143,6 +148,8 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
 class Limit:
     """The limit of the inverse rate matrix as the parameters approach a singular point from one side.
 
+    It shows which rates grow without bound near the point, and with which sign and factor.
+
     Attributes
     ----------
     variable : Expr
@@ -172,11 +179,11 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """The properties of a :class:`RateMatrix` that its entries do not contain: frame, parameters, determinant, inverse.
+    """What a :class:`RateMatrix` knows besides its entries: frame, parameters, determinant, inverse.
 
-    The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns
-    the determinant and the inverse with ``variable`` set to x, for x in ``domain``. The limits at the singular values
-    of the variable are computed from ``along``.
+    The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns the
+    determinant and the inverse with ``variable`` set to x, for x in ``domain``. The limits at the singular values of
+    the variable are computed from ``along``.
     """
 
     name: str
@@ -226,7 +233,11 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix, not a rate matrix, because SymPy rebuilds matrices with ``func(*args)``."""
+        """Return a plain matrix of the entries, not a rate matrix: SymPy rebuilds matrices with ``func(*args)``.
+
+        A product or a substitution therefore has no inverse or determinant of the old entries. :meth:`build` makes rate
+        matrices.
+        """
         return ImmutableDenseMatrix(*args, **kwargs)
 
     @classmethod
@@ -245,7 +256,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
         return type(self).build, (self.as_immutable(), self.facts)
 
     def as_immutable(self) -> ImmutableMatrix:
-        """Return the entries as a plain immutable SymPy matrix."""
+        """Return the entries as a plain immutable SymPy matrix, without the properties of a rate matrix."""
         return ImmutableDenseMatrix._fromrep(self._rep)
 
     @property
@@ -341,11 +352,14 @@ class Chart:
     about: str
 
     def rates(self, frame: str = "body") -> ImmutableMatrix:
-        """Return the matrix M of ``dp/dt = M * omega``, the inverse of ``rate_matrix(frame)``."""
+        """Return the matrix M of ``dp/dt = M * omega`` for the parameters p: the inverse of ``rate_matrix(frame)``.
+
+        ``frame`` is ``"body"`` or ``"space"``: the components of omega.
+        """
         return self.rate_matrix(check_frame(frame)).inverse
 
     def determinant(self, frame: str = "body") -> Expr:
-        """Return the determinant of ``rate_matrix(frame)``."""
+        """Return the determinant of ``rate_matrix(frame)``; where it is zero, the description is singular."""
         return self.rate_matrix(check_frame(frame)).determinant
 
     @property

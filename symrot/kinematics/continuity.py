@@ -17,7 +17,10 @@ __all__ = ["continuous_quaternion", "unwrap_euler"]
 
 
 def continuous_quaternion(q: Any) -> Array:
-    """Return quaternions, shape (n, ..., 4), with signs chosen so that neighbours have positive dot products."""
+    """Return the quaternions ``q``, shape (n, ..., 4), with signs chosen so that neighbours have positive dot products.
+
+    The first sample is unchanged. q and -q describe the same attitude, so a sign may jump where a conversion chose it.
+    """
     q = array_of(q, 4, what="a quaternion")
     turns_over = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
     sign = np.ones(q.shape[:-1])
@@ -63,7 +66,10 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 
 
 def _step(before: Array, after: Array) -> Array:
-    """Return the squared distance between two sets of angles, in revolutions, with differences modulo 2 pi."""
+    """Return the squared distance between two sets of Euler angles, with each difference taken modulo one revolution.
+
+    Differences are measured in revolutions. The closer of two sets is the one to choose next.
+    """
     turns = (after - before) / (2 * np.pi)
     step: Array = np.sum((turns - np.rint(turns)) ** 2, axis=-1)
     return step

@@ -76,7 +76,10 @@ def array_of(values: Any, *shape: int, what: str) -> Array:
 
 @np.errstate(all="ignore")
 def _by_components(function: Callable[..., Components], rows: Array, width: int) -> Array:
-    """Apply ``function`` to the components of ``rows``, shape (..., n); return its results as shape (..., width)."""
+    """Apply ``function`` to the components of ``rows``, shape (..., n), and return its results, shape (..., width).
+
+    ``function`` takes n arrays and returns ``width`` arrays; it is called for one block of samples after the other.
+    """
     flat = rows.reshape(-1, rows.shape[-1])
     result: Array = np.empty((len(flat), width))
     for start in range(0, len(flat), BLOCK):
@@ -192,7 +195,7 @@ def _dcm(*q: Array) -> Components:
 
 
 def quaternion_to_dcm(q: Any) -> Array:
-    """Return the direction cosine matrices ``dcm_sb``, shape (..., 3, 3), of quaternions of any norm."""
+    """Return the direction cosine matrices ``dcm_sb``, shape (..., 3, 3), of quaternions ``q`` of any norm but zero."""
     q = array_of(q, 4, what="a quaternion")
     return _by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
 
@@ -372,7 +375,10 @@ def _shadow(*s: Array) -> Components:
 
 
 def mrp_shadow(s: Any) -> Array:
-    """Return the second set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``; NaN for s = 0."""
+    """Return the other set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``, called its shadow.
+
+    For s = 0 (the identity) it is infinite, and the row is NaN.
+    """
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
 
@@ -391,9 +397,11 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return the axes of the three rotations whose product is ``dcm_sb``, and which angle belongs to each.
+    """Return, for the Euler sequence, the axes of the three rotations whose product is ``dcm_sb``, and their angles.
 
-    Also return m and sign with ``e_1 x e_2 = sign e_m`` for the axes of the first two rotations of the product.
+    The result is (axes, order, m, sign): ``axes`` are numbers 0 to 2, ``order`` says which angle belongs to each
+    rotation, and ``e_1 x e_2 = sign e_m`` holds for the axes of the first two. Example: ``"ZYX"`` gives (2, 1, 0), (0,
+    1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))

@@ -99,7 +99,10 @@ class SingularityDossier:
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """The limits of the inverse body Jacobian at the singular value."""
+        """The limits of the inverse body rate matrix at the locked middle angles, from both sides.
+
+        They show which rates grow without bound near gimbal lock.
+        """
         return self.jacobian_b.limits
 
     def text(self) -> str:
@@ -177,10 +180,10 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return the data of gimbal lock at a value of the middle angle: rates without effect, and the lost axis.
+    """Return the data of gimbal lock at the middle angle ``middle``: rates without effect, and the lost axis.
 
-    At gimbal lock the first and the last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s``
-    do not rotate the body, and no rates rotate it about the axis perpendicular to the last and the middle axis.
+    At gimbal lock the first and the last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s`` do
+    not rotate the body, and no rates rotate it about the axis perpendicular to the last and the middle axis.
     """
     first, _, third = symbols.angles
     jacobian = rate_jacobian(sequence, "body", (first, middle, third))

@@ -51,7 +51,10 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the index of this angle."""
+    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and which of the angles that is.
+
+    For an extrinsic sequence, the first factor belongs to the last angle.
+    """
 
     axis: int
     angle: Expr
@@ -125,7 +128,7 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
 
 
 def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
-    """Return the entry of the dcm that is +1 or -1 exactly if the sequence is in gimbal lock.
+    """Return the entry of ``dcm_sb`` that is +1 or -1 if and only if the sequence is in gimbal lock.
 
     The entry ``e_first^T dcm e_last`` is the cosine of the angle between the first axis and the rotated last axis.
     """
@@ -136,8 +139,9 @@ def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
     """Return the factors ``carry, core, order`` of the rate matrix ``B = carry * core * order``.
 
-    The columns of ``core`` are the three rotation axes in the frame of the middle rotation, where only the middle angle
-    occurs. ``carry`` rotates them to body or space components, and ``order`` sorts the columns in order of application.
+    ``core`` depends on the middle angle only, so it is easy to invert: its columns are the three rotation axes in the
+    frame of the middle rotation. ``carry`` rotates them to components in ``frame``, and ``order`` sorts the columns in
+    order of application.
     """
     first, middle, last = factors(sequence, angles)
     if check_frame(frame) == "body":

@@ -37,7 +37,10 @@ FORMS = ("unit", "homogeneous", "normalised")
 
 @cache
 def _unit_product(left: int, right: int) -> tuple[int, int]:
-    """Return ``(k, sign)`` with ``e_left e_right = sign e_k`` for the units 1, i, j, k numbered 0 to 3."""
+    """Return ``(k, sign)`` with ``e_left e_right = sign e_k``, where e_0 to e_3 are the units 1, i, j, k.
+
+    Example: i j = k gives ``_unit_product(1, 2) = (3, 1)``.
+    """
     if left == 0 or right == 0:
         return left + right, 1
     if left == right:
@@ -47,7 +50,7 @@ def _unit_product(left: int, right: int) -> tuple[int, int]:
 
 
 def left_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
-    """Return L(q), shape (4, 4), with ``q p = L(q) * p``."""
+    """Return L(q), shape (4, 4), the matrix of multiplication from the left: ``q p = L(q) * p`` for all p."""
     q = expressions(q, 4, "a quaternion")
     matrix = [[Integer(0)] * 4 for _ in range(4)]
     for left in range(4):
@@ -58,7 +61,7 @@ def left_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
 
 
 def right_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
-    """Return R(q), shape (4, 4), with ``p q = R(q) * p``."""
+    """Return R(q), shape (4, 4), the matrix of multiplication from the right: ``p q = R(q) * p`` for all p."""
     q = expressions(q, 4, "a quaternion")
     matrix = [[Integer(0)] * 4 for _ in range(4)]
     for left in range(4):
@@ -203,7 +206,10 @@ def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
 
 
 def _four_q_q(dcm_sb: Matrix) -> Matrix:
-    """Return ``4 q q^T``, shape (4, 4), of a unit quaternion from its dcm."""
+    """Return the matrix ``4 q q^T``, shape (4, 4), of a unit quaternion, from the entries of its dcm.
+
+    Each row is a multiple of q; :func:`quaternion_of_dcm` divides one of them by its length.
+    """
     trace = dcm_sb.trace()
     matrix = Matrix.zeros(4)
     matrix[0, 0] = 1 + trace

@@ -24,7 +24,10 @@ __all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow
 
 @dataclass(frozen=True)
 class Projection:
-    """A projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto three parameters."""
+    """The projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto three parameters.
+
+    ``centre`` is 0 for classical and 1 for modified Rodrigues parameters.
+    """
 
     name: str
     parameters: tuple[Symbol, ...]
@@ -136,7 +139,7 @@ MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axi
 
 
 def projection(name: str) -> Projection:
-    """Return the projection called ``"rodrigues"`` or ``"mrp"``."""
+    """Return the projection called ``name``, ``"rodrigues"`` or ``"mrp"``, as functions of its parameters."""
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:
             return which
@@ -144,12 +147,15 @@ def projection(name: str) -> Projection:
 
 
 def chart(name: str) -> Chart:
-    """Return the chart of ``"rodrigues"`` (without rotations by pi) or ``"mrp"`` (without rotations by 2 pi)."""
+    """Return the chart called ``"rodrigues"`` (classical) or ``"mrp"`` (modified parameters).
+
+    The first cannot describe rotations by pi, the second rotations by 2 pi.
+    """
     return projection(name).chart()
 
 
 def shadow(values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the second set of modified Rodrigues parameters of the same attitude (from -q), ``-s / |s|^2``.
+    """Return the other set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``: that of -q.
 
     One of the two sets has length at most 1; switching to it keeps the parameters bounded for every motion.
     """

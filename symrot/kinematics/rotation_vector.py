@@ -51,7 +51,10 @@ _size = Symbol("a", positive=True)
 
 
 def _stretch(z: Expr) -> Expr:
-    """Return ``sinh(z/2) / (z/2)``, the factor by which the exponential map scales components normal to the vector."""
+    """Return ``sinh(z/2) / (z/2)``, the factor by which :func:`jacobian` scales components normal to the vector.
+
+    For z = i a, with the length a of the rotation vector, rad, the factor is ``sin(a/2) / (a/2)``.
+    """
     return 2 * sinh(z / 2) / z
 
 

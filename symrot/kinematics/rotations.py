@@ -38,9 +38,9 @@ def check_frame(frame: str) -> str:
 
 
 def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
-    """Return ``values`` as a tuple of SymPy expressions.
+    """Return ``values`` as a tuple of ``size`` SymPy expressions.
 
-    Raise ``InputError`` unless there are exactly ``size`` of them.
+    Another number of values raises ``InputError``, in which ``what`` names them.
     """
     formulas = tuple(sympify(value) for value in values)
     if len(formulas) != size:
@@ -58,7 +58,7 @@ def axis_number(axis: int | str) -> int:
 
 
 def unit_vector(axis: int | str) -> ImmutableMatrix:
-    """Return the unit column of an axis, shape (3, 1)."""
+    """Return the unit column, shape (3, 1), of a coordinate axis, given as a number 0 to 2 or a letter X, Y, Z."""
     return ImmutableMatrix(eye(3).col(axis_number(axis)))
 
 

@@ -64,7 +64,10 @@ def toml_text(content: Content) -> str:
 
 
 def _write_table(content: Content, name: str, lines: list[str]) -> None:
-    """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables."""
+    """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables.
+
+    ``name`` is the dotted name of the table, as in its header ``[name]``; it is empty for the whole file.
+    """
     later = [key for key, value in content.items() if _is_section(key, value, name)]
     lines += [f"{_key(key)} = {_value(value)}" for key, value in content.items() if key not in later]
     for key in later:

@@ -75,7 +75,10 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
 
 
 def _path(name: str) -> Path:
-    """Return the path for a name such as ``body.part[0].radius``, or () if no number that can vary has this path."""
+    """Return the path for a name such as ``body.part[0].radius``: ``("body", "part", 0, "radius")``.
+
+    It is () if no number that can vary has this path.
+    """
     path = path_of(name)
     return path if len(path) > 1 and path[0] in VARIED_TABLES else ()
 
@@ -124,7 +127,7 @@ def _refuse(name: str, content: Content) -> NoReturn:
 
 
 def _numbers_in(content: Content) -> list[str]:
-    """Return the paths of all numbers in the tables of a scene file whose values can vary."""
+    """Return the paths, as texts, of all numbers in a scene file that a sweep can vary, for hints in error messages."""
 
     def walk(value: Any, place: str) -> list[str]:
         if isinstance(value, Mapping):
@@ -137,9 +140,10 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of the constants that a number in the scene file may change.
+    """Return the names of the constants of motion's equations, such as ``A``, that the number at ``path`` may change.
 
-    The result depends only on the table that contains the number, so that it is the same for all values.
+    The result depends only on the table of the scene file that contains the number, so that it is the same for all
+    values.
     """
     places = constant_places(scene)
     if path[0] == "initial":

@@ -19,7 +19,10 @@ FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", 
 
 
 def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return a right-hand side in heyoka's form, with the values of parameters compiled in as numbers."""
+    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with parameters as numbers in it.
+
+    ``rates`` is the program that symrot derived for dy/dt; ``parameters`` are its parameters' values by name.
+    """
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]
@@ -35,7 +38,8 @@ def heyoka_integrator(
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
     """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
 
-    ``began`` is the start time, s. If heyoka is not installed, return None.
+    ``rates`` is the program for dy/dt with the values ``parameters``, ``start`` the initial state and ``began`` its
+    time, s; ``settings`` are options of heyoka such as ``fast_math``. If heyoka is not installed, return None.
     """
     try:
         import heyoka

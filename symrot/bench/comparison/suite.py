@@ -79,6 +79,9 @@ def run(
 ) -> tuple[dict[str, Any], list[str]]:
     """Study all motions of the suite, write the files, and return the results as data for JSON and as lines of text.
 
+    ``directory`` is the folder of the files; the other arguments are those of
+    :func:`~symrot.bench.comparison.work_precision.study`.
+
     Raises
     ------
     InputError
@@ -142,7 +145,8 @@ def _short(value: Any, name: str = "") -> Any:
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return, for each other program, the median and the smallest ratio of its time to symrot's time over all motions.
 
-    There is one ratio for each motion and each power of ten of the error.
+    ``studies`` are the results of work-precision studies by name of the motion. There is one ratio for each motion and
+    each power of ten of the error.
     """
     rows = []
     for peer in PEERS:
@@ -164,7 +168,10 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio, with the smallest ratio in brackets; both have at least two digits."""
+    """Return the text of a median ratio, with the smallest ratio in brackets, such as ``12 (3.4)``.
+
+    Ratios from 10 on are printed without decimals, the others with one.
+    """
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )
@@ -203,7 +210,7 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite as lines of text; the first is the title."""
+    """Return the table of the suite's ``results``, from :func:`run`, as lines of text; the first is the title."""
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return [
@@ -216,7 +223,7 @@ def lines(results: Mapping[str, Any]) -> list[str]:
 
 
 def page(results: Mapping[str, Any]) -> str:
-    """Return the table of the suite as a Markdown page."""
+    """Return the table of the suite's ``results``, from :func:`run`, as a Markdown page that names the machine."""
     head, *rows = _rows(results)
     one = next(iter(results["studies"].values()))
     machine = one["machine"]
