@@ -22,9 +22,10 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """The state of one decision.
+    """The state of one decision, which bounds its work.
 
-    ``left`` is how many more formulas it may convert, ``results`` the stored conversions.
+    ``left`` is the number of formulas that it may still convert to polynomials, ``results`` holds the stored
+    conversions.
     """
 
     left: int = MOST_RINGS

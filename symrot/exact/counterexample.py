@@ -266,7 +266,7 @@ def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
 def _shortest(number: Expr) -> Expr:
     """Return a closed-form number as a rational if it is rational, as ``sqrt(4) + 1`` is.
 
-    Otherwise return it unchanged. A number with many roots is not tested.
+    Any other number is returned unchanged, also one with many roots, which would take long to test.
     """
     if number.is_Rational or not number.is_number:
         return number
@@ -289,11 +289,10 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return (free, solved).
+    """Return (free, solved): the choices that determine a point, and the hypotheses that determine the rest of it.
 
-    The variables whose values can be chosen, and pairs (variable, hypothesis that determines it). Each of these
-    hypotheses is linear in the variable. A hypothesis such as ``q0^2 + q1^2 + q2^2 + q3^2 = 1`` makes its variables one
-    free choice, a unit vector.
+    ``solved`` holds pairs (variable, hypothesis that is linear in it). A hypothesis such as ``q0^2 + q1^2 + q2^2 + q3^2
+    = 1`` makes its variables one free choice, a unit vector.
     """
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
@@ -344,7 +343,7 @@ def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
     """Return simple rational unit vectors with ``size`` components.
 
-    On the axes, (3/5, 4/5), (1, 2, 2)/3, (1, 1, 1, 1)/2. Components beyond these are zero.
+    They lie on the axes, or their components other than zero are (3/5, 4/5), (1, 2, 2)/3 or (1, 1, 1, 1)/2.
     """
     points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
     for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
@@ -373,9 +372,9 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational numbers that suit the symbol ``leaf``.
+    """Return a function that draws random rational numbers as values of the symbol ``leaf``.
 
-    Positive, integer, and so on.
+    They agree with its assumptions, such as positive or integer.
     """
 
     def draw(source: Random) -> tuple[Fraction, ...]:

@@ -87,10 +87,9 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
 
 
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
-    """Return whether the normal form of a formula, or of each entry of a matrix, is 0.
+    """Return whether a formula, or each entry of a matrix, is proven to be zero everywhere, since its normal form is 0.
 
-    It is proven to vanish everywhere. ``relations`` are hypotheses, as for :func:`normal_form`. False proves nothing
-    outside the scope of that function.
+    ``relations`` are hypotheses, as for :func:`normal_form`. Outside the scope of that function, False proves nothing.
     """
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
@@ -180,7 +179,7 @@ def witness(case: _FormulaCase) -> None:
 def leave_open(case: _FormulaCase) -> Decision:
     """Return the verdict "undecided", with the terms that prevent a decision, such as nested roots.
 
-    This stage is last.
+    This is the last stage, which decides what all others leave open.
     """
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)

@@ -113,10 +113,10 @@ class Case(ABC):
 
     @abstractmethod
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of the verdict.
+        """Return the conditions of a verdict, relations under which the proof of an equation is valid.
 
-        Relations that hold where both sides are defined and the proofs are valid. ``rings`` are further polynomial
-        rings in which proofs computed; their divisors must not be zero either.
+        They say where both sides are defined, and that divisors in the further polynomial ``rings``, in which proofs
+        computed, are not zero.
         """
 
     @abstractmethod
@@ -289,7 +289,7 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
     """Return (row, column), counted from 1, of entry ``number``, counted row by row from 0.
 
-    (2, 1) for 3 in a 3 x 3 matrix. Return None if ``shape`` is that of a scalar.
+    In a 3 x 3 matrix, entry 3 is at (2, 1). Return None if ``shape`` is that of a scalar.
     """
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 

@@ -34,10 +34,9 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a polynomial to be zero.
+    """A sufficient condition for a polynomial to be zero: polynomials of another ``ring`` (``numerators``) are zero.
 
-    All ``numerators``, polynomials of another ``ring``, are zero. A lift of ``asin(x) + acos(x) - pi/2`` says that its
-    sine is 0 and its cosine 1; asin and acos do not occur in it.
+    A lift of ``asin(x) + acos(x) - pi/2`` says that its sine is 0 and its cosine 1; asin and acos do not occur in it.
     """
 
     ring: FormulaRing

@@ -90,7 +90,7 @@ def _functions(formulas: Sequence[Expr]) -> set[Expr]:
 def _level(node: Expr) -> int:
     """Return how many functions are nested inside the arguments of the function ``node``.
 
-    0 for sin(x), 1 for sin(cos(x)).
+    It is 0 for sin(x), and 1 for sin(cos(x)).
     """
     return max(map(_depth, node.args))
 

@@ -149,7 +149,7 @@ def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
 def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
     """Return ``numerator`` over the denominator of ``value`` as an expression.
 
-    Factors of the denominator stay separate.
+    The factors of the denominator are not multiplied out.
     """
     below = [_plain(ring, ring.ratios.factors[number]) ** power for number, power in value.factors]
     return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)

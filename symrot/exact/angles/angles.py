@@ -34,8 +34,8 @@ class LinearForm:
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
     """Return an angle (rad) as rational multiples of atoms plus a multiple of pi.
 
-    ``2*phi - psi/2 + pi/3`` has two atoms. Products are expanded; every factor that is not a number is an atom. With
-    ``turns=False``, used for the exponent of an exponential, ``pi`` is an atom as any symbol is.
+    In ``2*phi - psi/2 + pi/3`` the atoms are phi and psi. Products are expanded; every factor that is not a number is
+    an atom. With ``turns=False``, used for the exponent of an exponential, ``pi`` is an atom as any symbol is.
 
     Raises
     ------

@@ -101,10 +101,10 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return (multiplier, bits) of a sum.
+    """Return (multiplier, bits) for a sum of terms (powers of the variables, coefficient).
 
-    Multiplier times the sum is an algebraic integer with conjugates below 2^bits. The terms of the sum are pairs
-    (powers of the variables, coefficient).
+    The multiplier makes the sum an algebraic integer, whose conjugates are then below 2^bits. ``known`` maps the
+    indices of the variables to their numbers.
     """
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]

@@ -89,7 +89,7 @@ def _minus(first: list[int], second: list[int]) -> list[int]:
 def _rest(poly: list[int], relation: tuple[int, ...]) -> list[int]:
     """Return the remainder of the division of ``poly`` by the monic polynomial ``relation``.
 
-    Lowest powers come first.
+    Both are lists of coefficients, lowest power first.
     """
     poly = list(poly)
     size = len(relation) - 1

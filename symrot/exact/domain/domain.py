@@ -75,7 +75,7 @@ def _is_plain(atom: Expr) -> bool:
 def signs(ring: FormulaRing) -> list[Expr]:
     """Return formulas that are nonnegative wherever the formulas of the ring are defined.
 
-    Radicands, 1 + x of asin(x), ..
+    They are the radicands, and 1 + x and 1 - x for asin(x) and acos(x).
     """
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]

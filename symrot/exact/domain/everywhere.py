@@ -34,7 +34,7 @@ def fails_everywhere(need: Need) -> bool:
 def range_everywhere(formula: Expr) -> Range:
     """Return (low, high): bounds of a formula that hold at all real points where it is defined.
 
-    (-3, -1) for cos(x) - 2. A bound is a fraction, or infinite if none is known.
+    For ``cos(x) - 2`` they are -3 and -1. A bound is a fraction, or infinite if none is known.
     """
     return _range(formula, {})
 

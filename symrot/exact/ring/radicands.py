@@ -119,10 +119,10 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
-    """Return (number, powers).
+    """Return (number, powers): a polynomial as a rational number times powers of irreducible factors.
 
-    A polynomial as a rational number times powers (factor -> exponent) of irreducible factors. A polynomial with more
-    than ``MOST_TERMS`` terms is not factored: it is the only factor.
+    ``powers`` maps each factor to its exponent. A polynomial with more than ``MOST_TERMS`` terms is not factored: it is
+    the only factor.
     """
     if poly.is_ground or len(poly) > MOST_TERMS:
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})

@@ -43,16 +43,16 @@ class Rule:
 
 @dataclass(frozen=True)
 class Relations:
-    """The relations of a polynomial ring.
+    """The relations between the variables of a polynomial ring.
 
-    ``rules``, highest variable first, or a Groebner ``basis`` if rules do not suffice.
+    They are ``rules``, highest variable first, or a Groebner ``basis`` if rules do not suffice.
     """
 
     rules: tuple[Rule, ...] = ()
     basis: tuple[PolyElement, ...] = ()
 
     def reduce(self, poly: PolyElement) -> PolyElement:
-        """Return the normal form of a polynomial.
+        """Return the normal form of a polynomial modulo the relations.
 
         It is 0 if and only if the relations imply that the polynomial is zero.
         """

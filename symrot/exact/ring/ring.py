@@ -150,10 +150,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append a variable to the ring for the expression of each pair (key, expression).
-
-        Return a map from key to its index.
-        """
+        """Append a variable to the ring for each pair (key, expression), and return a map from key to its index."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)
@@ -330,7 +327,7 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the variables that are algebraic numbers between which further relations may hold than those of the ring.
+        """Return the variables that are algebraic numbers, if relations may hold that the ring does not know.
 
         They are given as a map from index to number. Between square roots of primes there are no further relations; the
         result is empty then, and also if one of the numbers is imaginary.
@@ -371,7 +368,8 @@ class FormulaRing:
     def ratio(self, expression: Expr) -> Ratio:
         """Return an expression as a fraction of polynomials of the ring.
 
-        Equal expressions may give different fractions. Raise ``InputError`` if a divisor is zero everywhere.
+        It is not in lowest terms, so equal expressions may give different fractions. Raise ``InputError`` if a divisor
+        is zero everywhere.
         """
         known = self._read_already.get(expression)
         if known is None:
@@ -560,9 +558,9 @@ def _is_of_real(logarithm: Expr) -> bool:
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots by which a root is expressed; an empty list if ``dependence`` is None.
+    """Return the roots in the expression of a dependent root by others.
 
-    It is independent of others.
+    The list is empty if ``dependence`` is None, which means that the root is independent.
     """
     if dependence is None:
         return []

@@ -152,7 +152,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 def absolute(value: Expr) -> Root | Expr:
     """Return the absolute value of a real expression.
 
-    ``value`` or ``-value`` if the sign is known, otherwise a root.
+    It is ``value`` or ``-value`` if the sign is known, otherwise a root ``|x|``, whose square is ``x^2``.
     """
     sign = sign_of(value)
     return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
