@@ -40,7 +40,7 @@ class Timed(NamedTuple):
 
 
 def claims(group: str) -> list[str]:
-    """Return the claims of a group, one of :data:`LIMITS`.
+    """Return the claims of a group, ``typical``, ``naming`` or ``conditional`` (see the module's text).
 
     Raises
     ------

@@ -57,7 +57,7 @@ def _study(options: Namespace, say: Progress) -> ModeReport:
 
 
 def _targets(options: Namespace) -> None:
-    """Raise InputError if an output file cannot be written, before anything is measured."""
+    """Raise InputError if the file of ``--out`` or ``--plot`` cannot be written, before anything is measured."""
     from symrot.files.writing import check_target
 
     if options.out:
@@ -196,7 +196,9 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace, say: Progress) -> ModeReport:
-    """Run the mode of ``symrot bench`` that the options choose.
+    """Run the mode of ``symrot bench`` that the options choose, and return its report.
+
+    ``say`` is called with messages about the progress.
 
     Raises
     ------

@@ -75,7 +75,10 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
 
 
 def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
-    """Time all contestants on one motion, and return their runs with times and errors."""
+    """Time all contestants on the motion ``name``, and return their runs with times and errors.
+
+    Each run computes ``samples`` samples and is timed ``rounds`` times.
+    """
     problem, exact = Problem(scene(name)), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)
     runs = {("taylor", tolerance): _symrot(problem, "taylor", tolerance, times) for tolerance in OURS}
@@ -95,7 +98,10 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
 
 
 def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; differences of angular velocities are relative."""
+    """Return the largest difference between samples of two runs; differences of angular velocities are relative.
+
+    Samples are rows of angular velocity and quaternion.
+    """
     apart, rates = abs(states - exact), states.shape[-1] - 4
     size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
     return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))

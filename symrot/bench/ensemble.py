@@ -119,7 +119,10 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's batch integrator, one batch after another."""
+    """Return the number of steps and the last states of an ensemble, computed by heyoka's batch integrator.
+
+    A batch has ``width`` trajectories; one batch is computed after another.
+    """
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -131,7 +134,11 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's own ensemble function in one thread."""
+    """Return steps and last states of an ensemble, computed by heyoka's ensemble function in one thread.
+
+    ``propagate`` is this function of heyoka, and ``width`` the number of trajectories that ``integrator`` computes at
+    once.
+    """
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -171,7 +178,10 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
-    """Time all contestants on an ensemble, and return their runs with times and errors."""
+    """Time all contestants on an ensemble, and return their runs with times and errors.
+
+    With ``many``, heyoka also runs through its own ensemble functions, which are made for thousands of trajectories.
+    """
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 

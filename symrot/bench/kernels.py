@@ -122,9 +122,9 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C functions that repeat a one-sample function and a batch function, for timing.
+    """Return C functions that call a one-sample function and a batch function many times, so that they can be timed.
 
-    If a tool has no batch function, a loop over its one-sample function is added.
+    If a tool has no batch function (``batch`` is false), a loop over its one-sample function is added.
     """
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
@@ -163,7 +163,10 @@ _REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a
 
 
 def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
-    """Return the C text of a batch function whose loop inlines a one-sample function."""
+    """Return the C text of a batch function whose loop inlines the one-sample function ``name``.
+
+    ``inputs`` and ``outputs`` are the arguments of that function.
+    """
     every = [*inputs, *outputs]
     pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
     lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
@@ -227,7 +230,10 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a timing function for each shape of input (one sample, batches), from a compiled library."""
+    """Return a timing function for each shape of input (one sample, batches), from a compiled library.
+
+    ``shapes`` are names such as ``"cached"``; ``many`` is the number of samples in a large batch.
+    """
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
@@ -246,7 +252,11 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return the timing functions of a kernel in C, and its outputs for the batch that fits in the cache."""
+    """Compile a kernel, and return its timing functions and its outputs for the batch that fits in the cache.
+
+    ``text`` is the C text with its drivers (see :func:`_drivers`). ``prepare`` is called with the loaded library, for
+    tools whose functions need a set-up.
+    """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
@@ -372,7 +382,10 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return the number of operations of symrot's kernel, and the smallest number among the other tools."""
+    """Return the number of operations of symrot's kernel, and the smallest number among the other tools.
+
+    The first of the ``contestants`` is symrot.
+    """
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
@@ -422,7 +435,7 @@ def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
-    """Return the operations of a kernel by symrot and by other tools, and the names of the missing tools.
+    """Return the operations of a kernel as a map from tool to operations by kind, and the names of the missing tools.
 
     For derivatives, CasADi also starts from symrot's own program of the values instead of the textbook's formulas.
     """
@@ -443,7 +456,7 @@ def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
 
 
 def _count(names: Sequence[str]) -> None:
-    """Print the operations of kernels by symrot and by the other tools."""
+    """Print the operations of kernels by symrot and by the other tools, and the kernels for which symrot needs more."""
     over, absent = [], set[str]()
     for name in names:
         operations, missing = counts(name)

@@ -52,7 +52,10 @@ def _scene(omega: Sequence[Any]) -> Scene:
 
 
 def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, float, float, int]]:
-    """Return, for each contestant, relative error of the energy, error of the attitude in rad, seconds and steps."""
+    """Return, for each contestant, relative error of the energy, error of the attitude in rad, seconds and steps.
+
+    ``omega`` is the initial angular velocity, rad/s, of a free body that is followed for ``revolutions``.
+    """
     scene = _scene(omega)
     plan = make_plan(scene)
     kernel = scene_kernel(plan)

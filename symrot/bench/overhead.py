@@ -63,7 +63,10 @@ def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[n
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
-    """Return the seconds of ``propagator(t)`` and of the bare C call; None if the method cannot compute the scene."""
+    """Return the seconds of ``propagator(t)`` and of the bare C call; None if the method cannot compute the scene.
+
+    ``name`` is the scene, ``samples`` the number of times in ``t``; the seconds are medians over ``rounds``.
+    """
     try:
         propagate = propagator(name, method)
         if propagate.method != method:

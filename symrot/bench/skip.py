@@ -78,7 +78,10 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Measure the time that specialised kernels save, for several scenes or for one; return it as data for JSON.
+    """Measure the time that specialised kernels save, for the scene ``name`` or (None) for a list of motions.
+
+    A specialised kernel is the one for a scene's own zeros and symmetries. The result is data for JSON; ``quick`` takes
+    fewer repetitions.
 
     Raises
     ------
@@ -130,7 +133,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
 
 
 def _evaluations(problem: Problem) -> Callable[[], object]:
-    """Return a function that evaluates the rates at many states near the initial state."""
+    """Return a function that evaluates the rates of a scene at many states near the initial state, to be timed."""
     size = len(problem.y0)
     function = ctypes.CDLL(str(cache.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))).many
     function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None

@@ -122,9 +122,9 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Time two functions alternately; return the median of each in microseconds, and the median of their difference.
+    """Time two functions alternately; return the median of each, and the median of the difference one minus other.
 
-    A slow change of the machine's speed affects both runs and cancels in the difference.
+    All are in microseconds. A slow change of the machine's speed affects both runs and cancels in the difference.
     """
     times = np.empty((rounds, 3))
     for k in range(rounds):
@@ -168,7 +168,10 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return three times in microseconds: of a whole call, of the motion in it, and of the rest of the call."""
+        """Return three times in microseconds: of a whole call, of the motion in it, and of the rest of the call.
+
+        ``start`` has the new initial state as keyword arguments of the propagator: ``omega``, ``quaternion`` or both.
+        """
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
         own.follow(times, True)
@@ -198,7 +201,10 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a closed form; zero for a stepper, which has none."""
+    """Return the microseconds that C takes for the constants of a closed form, computed anew for each initial state.
+
+    It is zero for a stepper, which has no such constants.
+    """
     if motion.choice.method != "exact":
         return 0.0
     if motion.form.library == "spin_up":
@@ -240,7 +246,10 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print the times of propagator calls with another initial state, as a table."""
+    """Print a table of the times of a propagator's calls with an initial state that differs from the scene's.
+
+    A row is a scene with a method; the columns are explained in the module's text.
+    """
     heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
@@ -280,7 +289,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
-    """Print the times per trajectory of ensembles, in closed form and by steps, as a table."""
+    """Print the times per trajectory of ensembles of up to ``most`` motions, in closed form and by steps."""
     print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
         scene = _scene(name)
@@ -296,7 +305,10 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table of calls with another initial state, or with ``--ensembles`` the table of ensembles."""
+    """Print a table of times of a propagator's calls with new initial states; with ``--ensembles``, of ensembles.
+
+    Both tables are explained in the module's text.
+    """
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("scenes", metavar="SCENE", nargs="*")
     parser.add_argument("--rounds", type=int)

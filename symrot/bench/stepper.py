@@ -42,7 +42,10 @@ class Measurement(NamedTuple):
 
 
 def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
-    """Return one measurement per contestant, in the order symrot, by hand -O2, by hand -O3, SciPy."""
+    """Return one measurement per contestant, in the order symrot, by hand -O2, by hand -O3, SciPy.
+
+    The motion ends at the time ``stop``, s; each contestant is timed ``rounds`` times at one tolerance.
+    """
     kernel = text_by_hand("free_body.c")
     by_hand = kernel + text_by_hand("stepper_by_hand.c")
     a, b, c = MOMENTS

@@ -92,7 +92,10 @@ class Run(NamedTuple):
 
 
 class SteppedProblem(Problem):
-    """One motion of the comparison, over ``scale`` times its span, with the libraries of its steppers."""
+    """One motion of the comparison, with the compiled libraries of symrot's steppers for it.
+
+    The motion has ``scale`` times the span that the table of motions gives.
+    """
 
     def __init__(self, name: str, scale: float) -> None:
         super().__init__(scene(name))
@@ -109,7 +112,11 @@ class SteppedProblem(Problem):
         return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
     def largest_error(self, state: Iterable[Any], exact: Floats) -> float:
-        """Return the largest error of a state; errors of angular velocities are relative to the exact |omega|."""
+        """Return the largest error of the components of ``state`` against the state ``exact``.
+
+        Errors of angular velocities are relative to the exact |omega|. The error is infinite if a component is not
+        finite.
+        """
         computed, worst = np.array([float(value) for value in state]), 0.0
         if not np.isfinite(computed).all():
             return math.inf
@@ -168,7 +175,10 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
 ) -> TimedRun:
-    """Return a function that runs one of symrot's steppers, which is set up only once, as in a propagator."""
+    """Return a function that runs one of symrot's steppers, which is set up only once, as in a propagator.
+
+    ``follow`` sets up the stepper, from the library at ``path`` and the parameters ``p``.
+    """
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -179,7 +189,10 @@ def _stepper(
 
 
 def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a function that runs heyoka on the same right-hand side, whose parameters are compiled as numbers."""
+    """Return a function that runs heyoka on the same right-hand side, whose parameters are compiled as numbers.
+
+    ``settings`` are heyoka's own, such as ``fast_math``. Return None if heyoka is not installed.
+    """
     run = heyoka_integrator(problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings)
     if run is None:
         return None
@@ -192,7 +205,10 @@ def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]
 
 
 def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) -> TimedRun:
-    """Return a function that runs a handwritten loop in C, with a fixed number of steps."""
+    """Return a function that runs a loop in C that was written by hand, with a fixed number of steps.
+
+    ``method`` is ``rk4`` or ``dop853``; ``library_`` is the loaded library that contains the loop.
+    """
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
@@ -245,7 +261,10 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, flo
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Time all contestants on one motion, and return their runs; ``scale`` multiplies the span of the motion."""
+    """Time all contestants on one motion, and return their runs; ``scale`` multiplies the span of the motion.
+
+    With ``settings``, heyoka runs in all its settings; otherwise only in the default.
+    """
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
@@ -256,7 +275,8 @@ def raced(
 ) -> list[Run]:  # fmt: skip
     """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``.
 
-    ``error`` is a function that returns the error of a run from its last states.
+    A task returns its number of steps and its last states; ``error`` is a function that returns the error of these
+    states.
     """
     runs = []
     for name, tolerance, task in tasks:
@@ -274,7 +294,7 @@ def raced(
 
 
 def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
-    """Return the fastest run of the named contestants with at most this error, or None."""
+    """Return the fastest run of the contestants ``names`` whose error is at most ``error``, or None."""
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: min(run.seconds), default=None)
 
@@ -283,7 +303,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion, and return its ratios of times as a map from the title of each column."""
+    """Print the table of one motion; return the ratios of other times to symrot's, by title of the column."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]

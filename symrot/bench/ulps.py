@@ -73,7 +73,7 @@ class Measured:
 
 @memoised
 def _quotient(name: str) -> Callable[[Any], Any]:
-    """Return a function with a removable singularity as its defining quotient, for numbers of mpmath."""
+    """Return the quotient, such as sin(x)/x, that defines a function with a removable singularity, for mpmath."""
     x = Symbol("x", real=True)
     function: Callable[[Any], Any] = lambdify(x, REMOVABLE[name].formula(x), "mpmath")
     return function
@@ -136,7 +136,11 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return test arguments, one column per point; for a function of two arguments, a point has two components."""
+    """Return test arguments, one column per point; for a function of two arguments, a point has two components.
+
+    ``real`` is double or float; ``form`` is ``one`` or ``batch``, which have different ranges; ``count`` is
+    approximate.
+    """
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)

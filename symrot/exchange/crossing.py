@@ -47,10 +47,10 @@ class _Boxes(NamedTuple):
 
 
 def require_boundary(surface: Surface, where: str) -> str:
-    """Test a closed surface, and return a sentence about the tests that it passed.
+    """Test that a closed surface is the boundary of a body; return a sentence about the tests that it passed.
 
-    Raise InputError if it crosses itself. The surface may have several shells: parts beside each other, and cavities,
-    whose normals point into the cavity.
+    ``where`` is the file for error messages. Raise InputError if the surface crosses itself. It may have several
+    shells: parts beside each other, and cavities, whose normals point into the cavity.
     """
     numbers = shells(surface)
     count = int(numbers.max()) + 1
@@ -73,7 +73,10 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the numbers of the triangles through which test lines pass: the largest of each shell, and some others."""
+    """Return the indices of the triangles through which test lines pass: the largest of each shell, and some others.
+
+    ``numbers`` gives the shell of each triangle, and ``count`` is the number of shells.
+    """
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
@@ -86,7 +89,7 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Test a line through a triangle; return 1 if it passes the test, 0 if it meets an edge and shows nothing.
+    """Test a line through a triangle; return 1 if it passes the test, 0 if every line tried meets an edge.
 
     A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised.
     """
@@ -110,7 +113,8 @@ def _profile(
 ) -> tuple[Floats, NDArray[np.int64]] | None:
     """Return the depths at which a line crosses the surface, and the winding number behind each crossing.
 
-    Return None if the line passes too close to an edge.
+    The line is parallel to a coordinate axis, the last of ``axes``, and passes through the point ``target``; a depth is
+    the coordinate along it. Return None if the line passes too close to an edge.
     """
     u, v, depth = axes
     near = np.flatnonzero(boxes.around(u, target[u]))
@@ -181,7 +185,10 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
 
 
 def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
-    """Return the number of a triangle that has an edge through the other triangle of its pair, or None."""
+    """Return the number of a triangle that has an edge through the other triangle of its pair, or None.
+
+    Pair k consists of the triangles ``edges_of[k]`` and ``through[k]``; only edges of the first are tested.
+    """
     corners = surface.triangles
     a, b, c = (corners[through, k] for k in range(3))
     heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
@@ -201,7 +208,7 @@ def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
     """Return 1 or -1 for the side of the plane (a, b, c) on which each vertex d is.
 
-    Return 0 if rounding errors could change the side.
+    All are arrays of indices of vertices. Return 0 if rounding errors could change the side.
     """
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s

@@ -94,7 +94,10 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
 
 
 def read_mesh(path: Path, where: str, *, mass: Any, density: Any, scale: Any, flip: bool) -> MeshBody:
-    """Return the mass properties and the surface of a mesh file; ``where`` is its place in error messages."""
+    """Return the mass properties and the surface of a mesh file; ``where`` is its place in error messages.
+
+    The other arguments are those of :func:`mesh`.
+    """
     if (mass is None) == (density is None):
         amounts = "both" if mass is not None else "neither"
         raise InputError(f"{where}: expected exactly one of mass (kg) and density (kg/m^3) of a mesh, got {amounts}")
@@ -167,7 +170,7 @@ def _positive(value: Any, where: str, expectation: str) -> Fraction:
 
 
 def _density(density: Any, where: str) -> Any:
-    """Parse a density and return its formula; raise InputError if it cannot be read."""
+    """Parse a density, a number or a polynomial in x, y, z; raise InputError if it cannot be read."""
     if isinstance(density, str):
         node = parse(density, where)
         if node[0] != "number":
@@ -176,14 +179,21 @@ def _density(density: Any, where: str) -> Any:
 
 
 def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
-    """Return the highest degree of the monomials to be integrated: the degree of the density plus 2."""
+    """Return the highest degree of the monomials to be integrated for the inertia: the degree of the density plus 2.
+
+    ``node`` is the parsed density and ``source`` its text for error messages; ``unit`` is the file's unit of length, m.
+    """
     axes = {name: generator(name) * unit for name in "xyz"}
     powers = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
     return 2 + max((sum(item) for item in powers), default=0)
 
 
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
-    """Return the moments of a density (kg, kg m, kg m^2) from the integrals of monomials of local coordinates."""
+    """Return the moments of a density (kg, kg m, kg m^2) from the integrals of monomials of local coordinates.
+
+    ``moments`` are these integrals; their coordinates start from a centre and are in the file's unit of length,
+    ``unit`` m. ``node`` is the parsed density and ``source`` its text for error messages.
+    """
     axes = {
         name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)
     }
@@ -213,7 +223,8 @@ def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fractio
 def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
     """Return mass, centre of mass, tensor and relative error.
 
-    Return None if the error is too large or the mass is not positive.
+    ``amount`` is the total mass, kg, if it is given instead of a density. Return None if the error is too large or the
+    mass is not positive.
     """
     (mass, mass_error), first = body.mass, body.first
     if mass <= mass_error:

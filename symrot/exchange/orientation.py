@@ -44,7 +44,10 @@ def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
 
 
 def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation of a quaternion, scalar first, after division by its norm."""
+    """Return the rotation matrix of a quaternion, scalar first, after division by its norm; ``angles`` is not used.
+
+    The signature is that of all functions in this module that read an orientation.
+    """
     w, x, y, z = _direction(values, "a quaternion that is not zero")
     return matrix([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -69,7 +72,10 @@ def _of_euler(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation whose x axis is given, and whose y axis is the second vector made orthogonal to it."""
+    """Return the rotation whose x axis is given, and whose y axis is the second vector made orthogonal to it.
+
+    ``values`` are the six components of the two vectors.
+    """
     x = _direction(values[:3], "an x axis that is not zero")
     slope = dot(values[3:], x)
     y = _direction(

@@ -142,7 +142,7 @@ def _listed(names: list[str]) -> str:
 
 
 def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
-    """Return the format of a robot file, its root element and its bytes."""
+    """Return the format of a robot file (URDF, MJCF or SDF, by its root element), the root element, and the bytes."""
     content, root = read_xml(Path(path), str(path))
     if root.tag not in FORMATS:
         tags = ", ".join(f"<{tag}> ({form.name})" for tag, form in FORMATS.items())
@@ -182,7 +182,7 @@ def _require_body(inertial: Inertial) -> None:
 
 
 def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
-    """Return the numbers in the text of an attribute or element.
+    """Return the numbers in the text of an attribute or element; ``place`` names it in error messages.
 
     Raise InputError unless there are ``count`` of them.
     """
@@ -202,7 +202,7 @@ def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
 
 
 def _one(element: Element, tag: str, place: str) -> Element:
-    """Return the child element with the given tag; raise InputError unless there is exactly one."""
+    """Return the child element with the given tag; raise InputError, with ``place``, unless there is exactly one."""
     children = element.findall(tag)
     if len(children) != 1:
         raise InputError(f"{place}: expected one element <{tag}>, got {len(children) or 'none'}")
@@ -218,7 +218,11 @@ def _inertial(element: Element, reason: str) -> Element:
 def _body(
     element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
 ) -> Inertial:
-    """Return the inertial of a link in the link's axes, from a tensor in the axes of the element ``<inertial>``."""
+    """Return the inertial of a link in the link's axes.
+
+    ``tensor`` is about the centre of mass, in the axes of the element ``<inertial>``; ``rotation`` is the rotation
+    matrix from these axes to the link's, or None if they agree.
+    """
     x, y, z = center
     turned = tensor if rotation is None else _symmetric(rotate(tensor, rotation))
     return Inertial(element.get("name", ""), mass, (x, y, z), turned)
@@ -264,7 +268,10 @@ def _read_sdf(element: Element, root: Element) -> Inertial:
 
 
 def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
-    """Return the position and rotation of an element <pose> of SDF."""
+    """Return the position and the rotation matrix (None without rotation) of an element <pose> of SDF.
+
+    If ``pose`` is None, the position is zero.
+    """
     if pose is None:
         return (Fraction(0),) * 3, None
     if pose.get("relative_to") or pose.get("frame"):

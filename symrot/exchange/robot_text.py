@@ -72,7 +72,10 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
 
 
 def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, where: str) -> None:
-    """Raise InputError unless the new file, when it is read, gives the mass properties that were to be written."""
+    """Raise InputError unless ``result``, the new file, when it is read, gives the mass properties of ``inertial``.
+
+    The test is made before the file is written; ``name`` is the link.
+    """
     root = ElementTree.fromstring(result)
     element = next(element for element in form.elements(root) if element.get("name") == name)
     try:

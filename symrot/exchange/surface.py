@@ -68,7 +68,7 @@ def _hashes(points: Floats) -> NDArray[np.uint64]:
 
 
 def _edges(surface: Surface) -> tuple[Indices, Indices]:
-    """Return the start vertices and the end vertices of the edges of all triangles."""
+    """Return the start vertices and the end vertices of the three edges of each triangle, as two arrays of indices."""
     columns = [np.ascontiguousarray(surface.triangles[:, corner]) for corner in range(3)]
     return np.concatenate(columns), np.concatenate([columns[1], columns[2], columns[0]])
 
@@ -103,7 +103,10 @@ def require_closed(surface: Surface, where: str) -> None:
 
 
 def _defect(surface: Surface) -> str:
-    """Return a clause with the number of open edges, or of edges at which the orientations of triangles disagree."""
+    """Return a clause for an error message about a surface that is not closed.
+
+    It has the number of open edges, or of edges at which the orientations of triangles disagree.
+    """
     start, end = _edges(surface)
     keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)
     balance = np.bincount(number, weights=np.sign(end - start)).astype(np.int64)

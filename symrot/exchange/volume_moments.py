@@ -48,7 +48,7 @@ class VolumeMoments(NamedTuple):
 
 
 def exponents(degree: int) -> list[Exponents]:
-    """Return all (l, m, n) with a sum of at most ``degree``, in the order of their sums."""
+    """Return all exponents (l, m, n) of monomials x^l y^m z^n up to a degree, in the order of their degrees."""
     return [
         (first, second, total - first - second)
         for total in range(degree + 1)
@@ -63,7 +63,10 @@ def _lower(powers: Exponents, axis: int) -> Exponents:
 
 
 def _coefficients(corners: tuple[Corner, Corner, Corner], degree: int, one: Any) -> dict[Exponents, Any]:
-    """Return the coefficients of 1/((1 - a.v)(1 - b.v)(1 - c.v)) up to a degree, for arrays of corners."""
+    """Return the coefficients of 1/((1 - a.v)(1 - b.v)(1 - c.v)) up to a degree, by the exponents of v.
+
+    ``corners`` are a, b, c, each three arrays with an entry for each triangle; ``one`` is such an array of ones.
+    """
     before: dict[Exponents, Any] = {}
     for corner in corners:
         now: dict[Exponents, Any] = {(0, 0, 0): one}

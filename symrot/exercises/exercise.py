@@ -189,7 +189,7 @@ class Exercise:
 
 
 def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return a sheet of exercises as plain data for JSON."""
+    """Return a sheet of exercises as plain data for JSON, with the number of the format (``schema``)."""
     return {"schema": SCHEMA, "exercises": [each.to_json() for each in exercises]}
 
 
@@ -211,6 +211,9 @@ class _WithNumbers(PagePrinter):
 
 def make(template: str, topic: str, seed: int, problem: Problem, source: Random) -> Exercise:
     """Return an exercise made from a problem: prove its solution, choose random numbers, compute the answers.
+
+    ``template``, ``topic`` and ``seed`` are recorded in the exercise; ``source`` is the generator of the random
+    numbers.
 
     Raises
     ------
@@ -265,9 +268,9 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return the length of an answer, to prefer short ones.
+    """Return the length of an answer in digits, so that numbers with short answers are preferred.
 
-    It is the number of digits; zero, and numbers that are not short decimals, count as longer.
+    Zero, and numbers that are not short decimals, count as longer.
     """
     if answer.is_zero:
         return ZERO
@@ -311,12 +314,12 @@ def _base_unit(unit: str) -> str:
 
 
 def _used(problem: Problem, asked: Asked) -> list[Symbol]:
-    """Return the symbols of the problem that occur in the formula of a question, in the order of the problem."""
+    """Return the symbols of given quantities that occur in the formula of a question, in the order of the problem."""
     return [q.symbol for q in problem.quantities if asked.formula.has(q.symbol)]
 
 
 def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
-    """Return the exact answer to a question, in the unit of the question."""
+    """Return the exact answer to a question, in the unit of the question; ``values`` are the quantities in SI units."""
     return asked.formula.xreplace(dict(values)) / factor_of(asked.unit)
 
 
@@ -324,7 +327,8 @@ def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact:
     """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer).
 
     The slips are: a diameter used as a radius or the reverse, degrees used as radians, and a unit that is not
-    converted.
+    converted. ``values`` are the quantities in SI units, ``exact`` is the right answer. The grader recognises these
+    answers.
     """
     for quantity in problem.quantities:
         symbol = quantity.symbol
@@ -382,7 +386,10 @@ def _equation(line: Line) -> str:
 
 
 def _substituted(asked: Asked, drawn: Sequence[tuple[Quantity, str]]) -> str:
-    """Return the formula of a question as LaTeX, with values and units instead of symbols."""
+    """Return the formula of a question as LaTeX, with values and units instead of symbols, for the third hint.
+
+    ``drawn`` are pairs (quantity, number).
+    """
     data = {q.symbol: rf"\left({_scientific(number)}{unit_latex(q.unit)}\right)" for q, number in drawn}
     return str(_WithNumbers(data).doprint(asked.formula))
 

@@ -33,7 +33,7 @@ class Quantity:
 
 
 def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
-    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers, separated by spaces."""
+    """Return a :class:`Quantity`; ``numbers`` lists its possible numbers, as in ``"0.2 0.3 1/2"``."""
     return Quantity(symbol, tuple(numbers.split()), unit, words)
 
 
@@ -100,10 +100,10 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return one or two lines of a solution, which state the value of a quantity ``left``.
+    """Return one or two lines of a solution, which state the value of the quantity ``left``, displayed as ``name``.
 
-    The first line has the value as the law gives it (``written``). The second line has the simplified value
-    (``result``); it is left out if the two are the same.
+    The first line has the value as the law gives it (``written``), with ``law`` as its reason. The second line has the
+    simplified value (``result``), with the reason ``then``; it is left out if the two are the same.
     """
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))

@@ -128,7 +128,10 @@ def _exercise(name: str, seed: int) -> Exercise:
 
 
 def read_sheet(data: Any, where: str) -> ExerciseSheet:
-    """Return the sheet that JSON data describe; raise InputError if the data are not those of a sheet."""
+    """Return the sheet that JSON data describe; ``where`` is the file for error messages.
+
+    Raise InputError if the data are not those of a sheet, or have another schema (number of the format).
+    """
     try:
         if data["schema"] != SCHEMA:
             raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")

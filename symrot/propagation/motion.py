@@ -50,7 +50,10 @@ Floats = NDArray[np.float64]
 
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
-    """Return the rates of a plan as a NumPy function ``f(t, y, p)``, generated from the kernel."""
+    """Return the rates of a plan as a NumPy function ``f(t, y, p)``, generated from the kernel.
+
+    The rates are the time derivatives of the states y; p are the parameters of the kernel.
+    """
     from symrot.codegen.numpy_kernel import load_numpy_kernel
 
     function = load_numpy_kernel(kernel.rates)
@@ -60,7 +63,8 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
     """Return the plan without the simplifications that eliminate states, for a motion in closed form.
 
-    A closed form gives all states at no cost, since nothing has to be integrated.
+    A closed form gives all states at no cost, since nothing has to be integrated. ``form`` is named in the reason that
+    the plan gives.
     """
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
@@ -113,7 +117,7 @@ class Setup:
 
     @cached_property
     def message(self) -> str:
-        """The method and the reason for it, as one text."""
+        """The method and the reason for it, as one text, such as ``"exact: free body, theta functions"``."""
         return f"{self.choice.method}: {self.choice.reason}"
 
     @cached_property
@@ -123,17 +127,23 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the kernel counts time from an epoch that moves along, so that phases such as ``a*t`` keep digits."""
+        """Whether the stepper counts time from an epoch that moves along, so that phases such as ``a*t`` keep digits.
+
+        This is so if the rates depend on time, unless :attr:`allows_time_shift` is false.
+        """
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """Function that returns the parameters of the rates for a plan with any initial state: one double each."""
+        """Function from a plan, with any initial state of the scene, to the parameters of the rates, in doubles."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function that returns the parameters of the output quantities for a plan, two doubles for each parameter."""
+        """Function from a plan to the parameters of the output quantities, two doubles for each parameter.
+
+        Their sum approximates the parameter to 31 digits.
+        """
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
@@ -150,7 +160,10 @@ class Setup:
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return a plan and its kernel that count time from an epoch, a parameter that can change between steps."""
+        """Return a plan and its kernel that count time from an epoch, a parameter that can change between steps.
+
+        If the rates do not depend on time, plan and kernel of the setup are returned.
+        """
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
@@ -163,7 +176,10 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """The data shared by all motions of one plan that are integrated in C; adds the library of kernel and stepper."""
+    """The data shared by all motions of one plan that are integrated in C: the setup, and the compiled library.
+
+    The library contains the kernel of the plan and the stepper.
+    """
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
@@ -198,14 +214,17 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """The data shared by all motions of one plan that have a closed form; adds the kind of closed form."""
+    """The data shared by all motions of one plan that have a closed form: a setup, and the kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
 
     @cached_property
     def starts(self) -> Starts:
-        """Function that takes an initial state and returns the motion in closed form, for this body and its torques."""
+        """Function that takes an initial state and returns the motion in closed form, for this body and its torques.
+
+        The result of the function can be evaluated at any time.
+        """
         return self.form.starts(self.setup.plan.scene)
 
 
@@ -272,7 +291,10 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return the named output quantities, shape (n, len(names)), from states of shape (n, N) at n times."""
+        """Return the named output quantities, shape (n, len(names)), from states of shape (n, N) at n times.
+
+        The times are on the clock of the motion. A name is that of an output of the kernel, such as ``"omega_1 of t"``.
+        """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
             return states[:, [self.plan.states.index(name) for name in columns]]
@@ -288,7 +310,7 @@ class Motion(ABC):
         return np.array([self.start]), np.array([self.plan.initial_state]).reshape(1, -1)
 
     def initial_quantity(self, name: str) -> float:
-        """Return the value of a conserved quantity at the initial time."""
+        """Return the value of a conserved quantity at the initial time; ``name`` is its name, such as ``"energy"``."""
         if name == "quaternion norm":
             return 1.0
         output = next(item.output for item in self.kernel.conserved if item.name == name)
@@ -298,13 +320,16 @@ class Motion(ABC):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
         """Return the states at the times, shape (n, N), and the cost of the motion.
 
-        A motion in closed form returns separate arrays for angular velocity and attitude. ``in_order`` promises that
-        the times are finite and never decrease.
+        The times, s, are times of the scene, in any order. A motion in closed form returns separate arrays for angular
+        velocity and attitude. ``in_order`` promises that the times are finite and never decrease.
         """
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+
+        Span and times are on the clock of the motion; :meth:`path` takes times of the scene.
+        """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
@@ -349,12 +374,16 @@ class Motion(ABC):
 class RestartableMotion(Motion):
     """A motion that can restart from another initial state of the same structure; nothing is derived again.
 
-    Initial states have the same structure if they have the same :func:`symrot.planning.plan.structure_key`.
+    Two initial states have the same structure if the equations have the same form for both, that is, if they have the
+    same :func:`symrot.planning.plan.structure_key`.
     """
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state, for which the equations must have the same form."""
+        """Return the motion from another initial state, for which the equations must have the same form.
+
+        This is not checked; :func:`symrot.planning.plan.structure_key` tells whether it is so.
+        """
 
 
 class SteppedInC(ABC):
@@ -367,7 +396,10 @@ class SteppedInC(ABC):
 
 
 class ShiftableMotion(RestartableMotion):
-    """A numerically integrated motion whose clock can show 0 at the scene's t = 0 or at the motion's own start."""
+    """A numerically integrated motion whose clock can show 0 at the scene's t = 0 or at the motion's own start.
+
+    The clock is the time that the stepper counts. If it shows 0 at the start, times near a late start keep more digits.
+    """
 
     @property
     @abstractmethod
@@ -376,7 +408,10 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
+
+        ``in_order`` promises that the times are finite and never decrease.
+        """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at times of the scene, shape (n, N), and the cost of the motion.
@@ -399,7 +434,10 @@ class ShiftableMotion(RestartableMotion):
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that keeps the most digits of these times: its own, or one with 0 at the start."""
+    """Return the motion on the clock that keeps the most digits of these times: its own, or one with 0 at the start.
+
+    ``times`` are times of the scene, s. A motion that cannot change its clock is returned itself.
+    """
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
@@ -416,7 +454,7 @@ class ConstantMotion(RestartableMotion):
         return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from times to empty arrays: no state is integrated."""
+        """Return a function from n times to an empty array, shape (n, 0): no state is integrated."""
         return lambda t: np.empty((len(t), 0))
 
 
@@ -483,7 +521,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @property
     def library(self) -> Path:
-        """The compiled library of kernel and stepper."""
+        """The path of the compiled library of kernel and stepper."""
         return self._shared.library
 
     @cached_property
@@ -514,7 +552,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
     def _clock(self) -> dop853.Clock:
         """Function that takes an epoch, s, and returns a pair: a library of rates, and the parameters of these rates.
 
-        The rates are functions of the time since that epoch.
+        The rates are functions of the time since that epoch. The epoch is a time on the clock of the motion.
         """
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
@@ -547,7 +585,7 @@ class SciPyMotion(ShiftableMotion):
     def _clock(self) -> Callable[[float], Any]:
         """Function that takes an epoch, s, and returns a pair: rates in Python, and the parameters of these rates.
 
-        The rates are functions of the time since that epoch.
+        The rates are functions of the time since that epoch. The epoch is a time on the clock of the motion.
         """
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
@@ -585,11 +623,14 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """Interface of a motion under torques that jump or bend at certain times (switches) and are smooth in between."""
+    """Interface of a motion under torques that jump or bend at certain times (switches) and are smooth in between.
+
+    Its method ``parts`` returns the smooth parts, in which events are searched.
+    """
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states.
+        """Return the motion from its start to ``end``, s: a list of polynomials, and a function from times to states.
 
         If an error ends the motion early, it is appended to ``broken``.
         """
@@ -599,7 +640,11 @@ class MotionInParts(Motion):
 
 
 def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMotion:
-    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene."""
+    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene.
+
+    ``choice`` is a result of :func:`symrot.propagation.method.choose_method`, and ``tolerance`` is the error of the
+    trajectory to aim for.
+    """
     if choice.form is not None:
         choice.form.begin()
         plan = with_full_state(plan, choice.form)
@@ -615,7 +660,7 @@ def _setup(plan: Plan, choice: Choice, tolerance: float) -> Setup:
 
 
 def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion:
-    """Return the motion of a plan, integrated by a stepper in C."""
+    """Return the motion of a plan, integrated in C by the method of ``choice``, ``taylor`` or ``dop853``."""
     if choice.method == "taylor":
         kernel = scene_kernel(plan)
         library = taylor_library(plan, kernel, tolerance)
@@ -628,7 +673,8 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
     """Return the numerically integrated motion of a plan, on a clock that shows 0 at its start.
 
-    The epoch is a parameter of the rates. If the rates do not depend on time, the clock of the scene is used.
+    The epoch, the time of the scene at which the clock shows 0, is a parameter of the rates. If the rates do not depend
+    on time, the motion keeps the clock of the scene.
     """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")

@@ -31,7 +31,8 @@ def report(t: float, start: float, stop: float) -> None:
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
     """Context manager: progress inside the block is reported as progress of one motion from ``start`` to ``stop``, s.
 
-    ``zero`` returns the time in the whole motion at which the clock of the part shows 0.
+    It is for a motion that is computed in parts. ``zero`` returns the time in the whole motion at which the clock of
+    the present part shows 0. Inside another such block, the outermost one applies.
     """
     token = _whole.set(_whole.get() or (start, stop, zero))
     try:
@@ -42,7 +43,10 @@ def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -
 
 @contextmanager
 def reporting(reporter: Reporter) -> Iterator[None]:
-    """Context manager: report the progress of each motion inside the block to the function ``reporter``."""
+    """Context manager: report the progress of each motion inside the block to the function ``reporter``.
+
+    ``reporter`` is called with the time reached, the start and the end of the motion, s.
+    """
     token = _reporter.set(reporter)
     try:
         yield

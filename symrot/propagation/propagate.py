@@ -148,7 +148,7 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for a motion of which symrot computes no derivatives.
+    """Raise InputError if symrot computes no derivatives of such a motion; ``state`` is the option ``state``.
 
     These are motions in Euler angles and motions under torques that jump, bend or have no formula.
     """
@@ -170,7 +170,10 @@ def _with_values(
     attitude: Any,
     parameters: Mapping[str, Any] | None,
 ) -> Scene:
-    """Return the scene with another initial state and other constants; None means the value in the scene."""
+    """Return the scene with another initial state and other constants; None means the value in the scene.
+
+    The arguments are those of :func:`propagator`.
+    """
     refuse_two(attitude, quaternion)
     start = {"omega": omega, "attitude": attitude if quaternion is None else {"quaternion": quaternion}}
     changes = {key: value for key, value in start.items() if value is not None}

@@ -86,7 +86,11 @@ class Propagator:
 
     @cached_property
     def _by_structure(self) -> dict[Hashable, Motion]:
-        """The first motion for each structure of initial states, from which later motions copy what does not change."""
+        """The first motion for each structure of initial states, from which later motions copy what does not change.
+
+        The keys are those of :func:`symrot.planning.plan.structure_key`: initial states with equal keys have equations
+        of the same form.
+        """
         return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:
@@ -133,7 +137,7 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Prepare the first call: derive the kernel and, at the same time, compile the closed form if there is one."""
+        """Prepare the first call: derive the kernel and compile the closed form, if the motion has one."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
@@ -218,7 +222,10 @@ class Propagator:
         return variation(scene, self.sensitivities, times)
 
     def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
-        """Return the state transition matrix of a scene's motion, see :meth:`Trajectory.transition`."""
+        """Return the state transition matrix of a scene's motion from ``t0`` to ``t1``, s, shape (6, 6).
+
+        See :meth:`symrot.propagation.trajectory.Trajectory.transition`. ``scene`` has the initial state of the motion.
+        """
         from symrot.propagation.sensitivities.variation import transition_matrix
 
         return transition_matrix(scene, t0, t1)
@@ -244,7 +251,12 @@ class Propagator:
         return trajectory
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return the exception that ended a motion early; its ``trajectory`` holds the samples before that time."""
+        """Return the exception that ended a motion early; its ``trajectory`` holds the samples before that time.
+
+        ``error`` is the exception as a stepper raised it, ``times`` are the requested sample times, and ``began`` is
+        the moment at which the computation began. A PropagationError is replaced by one whose message begins with the
+        name of the scene.
+        """
         samples: Samples | None = getattr(error, "samples", None)
         part: Trajectory | None = getattr(error, "trajectory", None)
         ended: BaseException = error
@@ -262,7 +274,7 @@ class Propagator:
 
 
 def _variables(scene: Scene, names: Sequence[str]) -> Sequence[str]:
-    """Return the names of variables; raise InputError if one names no initial value or constant of the scene."""
+    """Return ``names``, the variables of the derivatives; raise InputError if one is no initial value or constant."""
     from symrot.propagation.sensitivities.variables import read_variables
 
     read_variables(scene, names)
@@ -296,7 +308,10 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double as a Fraction; raise InputError if it is subnormal (too small)."""
+    """Return the exact value of a finite double as a Fraction; raise InputError if it is subnormal (too small).
+
+    ``name`` is the argument that the error names.
+    """
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
@@ -310,8 +325,9 @@ def _lowest(top: int, bottom: int) -> Fraction:
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
     """Return a quaternion of doubles divided by its norm, as exact fractions.
 
-    The function does the same as :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half
-    the time, since all denominators are powers of two.
+    The norm is irrational in general, so that the result is a rational approximation. The function does the same as
+    :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half the time, since all
+    denominators are powers of two.
     """
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
@@ -336,7 +352,8 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, attitude: Any = None) -> Initial:
     """Return the initial state for a call of a propagator, in exact numbers.
 
-    For an argument that is None, the value in the scene is used.
+    For an argument that is None, the value in the scene is used. ``quaternion`` and ``attitude`` are two forms of the
+    same argument; together they raise InputError.
     """
     initial = scene.initial
     refuse_two(attitude, quaternion)

@@ -25,7 +25,7 @@ NO_NUMBERS = (bool, np.bool_, np.datetime64, np.timedelta64, np.complexfloating,
 
 
 def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArray[np.float64]:
-    """Return the argument as a new array of doubles.
+    """Return the argument ``values`` as a new array of doubles.
 
     Parameters
     ----------

@@ -47,7 +47,8 @@ def starts_far(start: float, low: float, high: float) -> bool:
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     """Return a plan and its kernel in which time is counted from an epoch, a new constant of the plan.
 
-    If the rates do not depend on time, plan and kernel are returned unchanged.
+    The epoch is the time of the scene at which the clock shows 0. If the rates do not depend on time, plan and kernel
+    are returned unchanged.
     """
     if not kernel.rates.uses("t"):
         return plan, kernel
@@ -104,7 +105,10 @@ class ShiftedParameters:
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
-    """Return integers a, b, c if a formula equals (a + b*epoch)/c, which is fast to evaluate; None otherwise."""
+    """Return integers a, b, c if a formula equals (a + b*epoch)/c, which is fast to evaluate; None otherwise.
+
+    For the formula ``epoch/2 + 1/3`` they are (2, 3, 6).
+    """
     values = _coefficients(node)
     if values is None:
         return None
@@ -114,7 +118,10 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return the numbers a and b of a formula that equals a + b*epoch, or None for any other formula."""
+    """Return the numbers a and b of a formula that equals a + b*epoch, or None for any other formula.
+
+    For the formula ``2*(epoch + 1)`` they are 2 and 2.
+    """
     if node[0] == "number":
         return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):
@@ -137,7 +144,10 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library (kernel and DOP853 stepper) for a plan whose time is counted from an epoch."""
+    """Return the path of the library (kernel and DOP853 stepper) for a plan whose time is counted from an epoch.
+
+    Plan and kernel are those that :func:`time_shifted` returns.
+    """
     return motion_library(plan, kernel)
 
 
@@ -163,7 +173,10 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Replace each subexpression of a formula that does not contain the epoch by its value."""
+    """Return a formula in which each subexpression that does not contain the epoch is replaced by its value.
+
+    ``known`` holds the exact values of all other names. With ``a`` = 3 the formula ``a*2*epoch`` becomes ``6*epoch``.
+    """
     if node == ("symbol", EPOCH):
         return node
     if EPOCH not in names(node):

@@ -65,16 +65,19 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """Interface of the propagator to which a trajectory refers: it returns motions from other initial states."""
+    """Interface of the propagator to which a trajectory refers: it computes more about the same motion.
+
+    Examples are the dense solution, derivatives, and the motion again after a trajectory has been pickled.
+    """
 
     def motion_from(self, initial: Initial) -> Motion:
-        """Return the motion from an initial state."""
+        """Return the motion of the scene from an initial state."""
 
     def sensitivities_of(self, scene: Scene, times: Floats) -> "Sensitivities | None":
         """Return the derivatives of a scene's motion at sample times; None if none were requested."""
 
     def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
-        """Return the state transition matrix of a scene's motion."""
+        """Return the state transition matrix of a scene's motion from ``t0`` to ``t1``, s, shape (6, 6)."""
 
 
 class Trajectory(MotionSamples):
@@ -143,7 +146,10 @@ class Trajectory(MotionSamples):
             self.events = events.events
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the samples and the propagator for pickle; a copy prepares the motion again only if it needs more."""
+        """Return the samples and the propagator for pickle; a copy prepares the motion again only if it needs more.
+
+        A trajectory without a propagator cannot be pickled: PicklingError is raised.
+        """
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
         return {name: value for name, value in self.__dict__.items() if name not in _RECOMPUTED}
@@ -186,7 +192,10 @@ class Trajectory(MotionSamples):
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel."""
+        """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel.
+
+        A name is that of an output of the kernel, such as ``"omega_1 of t"``.
+        """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.states):
             return self._states[:, [self.states.index(name) for name in columns]]

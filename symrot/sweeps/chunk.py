@@ -46,7 +46,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Chunk:
-    """The results of the trajectories ``start`` to ``stop``."""
+    """The results of the trajectories number ``start`` to ``stop - 1``: varied values, outputs, status, messages."""
 
     start: int
     stop: int
@@ -71,7 +71,10 @@ class _Inputs:
 
 
 def compute(job: Job, start: int, stop: int) -> Chunk:
-    """Return the results of the trajectories ``start`` to ``stop`` of a sweep."""
+    """Return the results of the trajectories ``start`` to ``stop - 1`` of a sweep.
+
+    Trajectories that cannot be computed have NaN as outputs, a status and a message.
+    """
     draws, n = job.design.draws(start, stop), stop - start
     samples = sample_times(job.outputs, job.times)
     shapes = {output.name: (n, len(job.times)) if output.is_series else (n,) for output in job.outputs}
@@ -87,7 +90,10 @@ def compute(job: Job, start: int, stop: int) -> Chunk:
 
 
 def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
-    """Return the arguments of the ensemble, and the rows whose varied values give a valid scene."""
+    """Return the arguments of the ensemble, and the rows whose varied values give a valid scene.
+
+    ``draws`` are the varied values, one row for each trajectory. For each other row, ``messages`` gets the reason.
+    """
     n, scene = len(draws.values), job.scene
     inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
     rows = np.arange(n)
@@ -106,7 +112,8 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
 def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
     """Read the scene with the varied values of each row, and write its constants into ``inputs``.
 
-    Return the rows that gave a valid scene; for each other row, ``messages`` gets the reason.
+    ``paths`` maps the place of each varied number in the scene file to its column in ``draws``. Return the rows that
+    gave a valid scene; for each other row, ``messages`` gets the reason.
     """
     assert job.content is not None
     constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})
@@ -136,9 +143,10 @@ Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quat
 
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
-    """Return a function that puts values at some paths of the scene file, and returns the constants of the scene.
+    """Return a function that puts values at ``paths`` of the scene file, and reads the scene again.
 
-    If the file with these values is not valid, the function returns the reason.
+    The function returns the values of the named ``constants`` of this scene, its initial omega and its quaternion. If
+    the file with these values is not valid, it returns the reason.
     """
     names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
@@ -158,7 +166,7 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
 
 
 def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str]) -> Rows:
-    """Return the rows whose values the ensemble accepts; for each other row, write the reason into ``messages``.
+    """Return those of ``rows`` whose values the ensemble accepts; the reasons for others go into ``messages``.
 
     Rejected rows are found by bisection: a rejected group is halved until it has one row.
     """
@@ -184,7 +192,10 @@ def _propagate(
     job: Job, inputs: _Inputs, rows: Rows, samples: Floats, outputs: dict[str, Floats], status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:  # fmt: skip
-    """Propagate some rows, which have the same equations of motion, and write their outputs into the arrays."""
+    """Propagate ``rows``, which have the same equations of motion; write the results into ``outputs`` and ``status``.
+
+    ``samples`` are the times, s, at which the outputs need the state. A trajectory that stops early gets a message.
+    """
     try:
         ensemble = propagate_ensemble(
             job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance
@@ -205,7 +216,7 @@ def _propagate(
 
 
 def prepared(job: Job) -> Job:
-    """Return the job, with a scene that also computes the attitude if an output needs it."""
+    """Return the job, with a scene that computes just the quantities that the outputs need, such as the attitude."""
     quantities = tuple(dict.fromkeys(output.quantity for output in job.outputs))
     output = job.scene.output._replace(quantities=quantities)
     return replace(job, scene=replace(job.scene, output=output))

@@ -37,8 +37,9 @@ def _client(address: str) -> Any:
 def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
     """Yield the chunks of a job in the order in which they are complete, computed by the workers of a Dask cluster.
 
-    If a worker is lost, Dask computes its chunks on another worker. At most two chunks for each thread of the cluster
-    are submitted at a time.
+    ``ranges`` are the pairs (start, stop) of the chunks, ``address`` is that of the cluster's scheduler. If a worker is
+    lost, Dask computes its chunks on another worker. At most two chunks for each thread of the cluster are submitted at
+    a time.
 
     Raises
     ------

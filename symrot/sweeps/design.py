@@ -69,7 +69,10 @@ class Design:
         return tuple(axis.target.name for axis in self.axes)
 
     def draws(self, start: int, stop: int) -> Draws:
-        """Return the values of the trajectories ``start`` to ``stop``; they depend only on the design and the index."""
+        """Return the varied values of the trajectories ``start`` to ``stop - 1``.
+
+        They depend only on the design and the index of each trajectory, so that any process can compute any part.
+        """
         index = np.arange(start, stop)
         draw, point = np.divmod(index, self.grid_points)
         drawn = [axis for axis in self.axes if isinstance(axis.law, Distribution)]
@@ -140,7 +143,7 @@ def _choice(value: object, known: Sequence[str], where: str) -> None:
 
 
 def _require_apart(axes: Sequence[Axis]) -> None:
-    """Raise InputError if two of the varied values may set the same number of the scene."""
+    """Raise InputError if two of the varied values may set the same number of the scene, such as one rate."""
     initial = [axis.target.path for axis in axes if axis.target.path[:1] == ("initial",)]
     rates = [axis.target.name for axis in axes if axis.target.unit == "rad/s" and axis.target.name.startswith("omega_")]
     if initial and rates:
@@ -174,7 +177,10 @@ def _count(count: object, points: int, random: bool) -> int:
 
 
 def _whole(value: object, where: str, low: int, high: int) -> int:
-    """Return a whole number, which may be written as 1e6; raise InputError if it is not whole or out of range."""
+    """Return a whole number from ``low`` to ``high``, which may be written as 1e6, as an int.
+
+    Raise InputError if ``value`` is not whole or out of range; ``where`` is its name in the message.
+    """
     expectation = f"{where}: expected a whole number from {low} to {high:g}, got {show(value)}"
     if isinstance(value, bool) or not isinstance(value, int | float | str | np.integer):
         raise InputError(expectation)

@@ -129,7 +129,7 @@ def _items(law: object, where: str) -> Sequence[object]:
 
 
 def _split(arguments: str) -> list[str]:
-    """Return the arguments of a call, split at commas outside brackets."""
+    """Return the arguments of a call, split at commas outside brackets: ``a, f(b, c)`` -> ``a`` and ``f(b, c)``."""
     parts, depth = [""], 0
     for character in arguments:
         depth += (character == "(") - (character == ")")

@@ -33,7 +33,7 @@ LARGEST_CHUNK = 4_000_000  # samples in a chunk, about 300 MB with all quantitie
 
 @dataclass(frozen=True)
 class Variable:
-    """One array of the results: its name, its dimensions after ``trajectory``, and its labels."""
+    """One array of the results: its name, its dimensions after the first (``trajectory``), unit, frame and meaning."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -43,14 +43,14 @@ class Variable:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """The labels as attributes of a variable in a file."""
+        """Unit, meaning and frame as attributes of the array in a file, without those that are empty."""
         labels = {"units": self.unit, "long_name": self.meaning, "frame": self.frame}
         return {key: value for key, value in labels.items() if value}
 
 
 @dataclass(frozen=True)
 class Table:
-    """One array of statistics: its dimensions, values and labels."""
+    """One array of statistics: its dimensions, values, unit and meaning."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -60,7 +60,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Header:
-    """The data with which a store is created: identity of the sweep, its arrays, and number of rows in a chunk."""
+    """The data with which a store is created: identity of the sweep, arrays, number of trajectories in a chunk."""
 
     identity: Mapping[str, str]  # what determines the results, by name
     scene: str
@@ -71,7 +71,7 @@ class Header:
     rows: int
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return, for each chunk, the index of its first trajectory and the index after its last trajectory."""
+        """Return for each chunk the pair (start, stop): index of its first trajectory, and index after its last."""
         return [(start, min(start + self.rows, self.count)) for start in range(0, self.count, self.rows)]
 
 
@@ -91,19 +91,19 @@ class Store(Protocol):
         """
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of trajectories, one per chunk, that are still missing."""
+        """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
 
     def write(self, chunk: Chunk) -> None:
         """Store a chunk; a chunk that is stored already is replaced by the same values."""
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
-        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are stored."""
+        """Return whether the values of the array ``name`` are stored."""
 
     def table(self, name: str) -> NDArray[Any] | None:
-        """Return an array of statistics, or None if there is none with this name."""
+        """Return the array of statistics called ``name``, such as ``energy_mean``, or None if there is none."""
 
     def finish(self, tables: list[Table], alone: str) -> None:
         """Store the statistics.
@@ -114,7 +114,10 @@ class Store(Protocol):
 
 
 def header_of(job: Job, rows: int | None = None) -> Header:
-    """Return the header of a sweep; ``rows`` is the number of trajectories in a chunk, by default chosen by size."""
+    """Return the header of the results of a sweep: what they are, and how they are stored.
+
+    ``rows`` is the number of trajectories in a chunk; by default it follows from the size of the results.
+    """
     design = job.design
     inputs = [
         Variable(f"input_{axis.target.name}", (), axis.target.unit, "", f"value of {axis.target.name} that varies")
@@ -132,7 +135,10 @@ def header_of(job: Job, rows: int | None = None) -> Header:
 
 
 def _identity(job: Job) -> dict[str, str]:
-    """Return the settings that determine the results of a sweep, as short texts by name."""
+    """Return the settings that determine the results of a sweep, as short texts by name, such as the seed.
+
+    Stored results are continued only by a sweep with the same settings.
+    """
     import symrot
 
     scene, design = job.scene, job.design
@@ -157,7 +163,10 @@ def _digest(text: str) -> str:
 
 
 def difference(own: Mapping[str, str], other: object) -> str:
-    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree."""
+    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree.
+
+    ``own`` are the settings of this sweep, ``other`` is what a file has in their place.
+    """
     if not isinstance(other, Mapping):
         return "it has no description"
     return ", ".join(name for name in own if own[name] != other.get(name))

@@ -39,11 +39,11 @@ class MemoryStore:
 
     @property
     def alone(self) -> str:
-        """A text that describes the statistics, if they are stored without the values of the outputs; else empty."""
+        """Always empty, because results in memory are used only by the sweep that computed them."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of trajectories, one per chunk, that are still missing."""
+        """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
         return [each for each in self.header.ranges() if self._arrays[STATUS][each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
@@ -53,15 +53,15 @@ class MemoryStore:
             self._arrays[name][chunk.start : chunk.stop] = values
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
-        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""
         return self._arrays[name][start:stop]
 
     def table(self, name: str) -> NDArray[Any] | None:
-        """Return an array of statistics, or None if there is none with this name."""
+        """Return the array of statistics called ``name``, or None if there is none."""
         return next((table.values for table in self.tables if table.name == name), None)
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are stored."""
+        """Return whether the values of the array ``name`` are stored."""
         return name in self._arrays
 
     def finish(self, tables: list[Table], alone: str) -> None:

@@ -9,12 +9,15 @@ __all__ = ["optional"]
 
 
 def optional(name: str, where: str, extra: str = "sweep") -> Any:
-    """Return a module of an optional package.
+    """Return the module ``name`` of an optional package, such as ``"xarray"``.
+
+    ``where`` is the function that needs it and ``extra`` is the part of symrot that installs it, as in
+    ``symrot[sweep]``; both are for the message.
 
     Raises
     ------
     InputError
-        If the package is not installed; the message names ``where`` it is needed and the extra that installs it.
+        If the package is not installed.
     """
     try:
         return import_module(name)

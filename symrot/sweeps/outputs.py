@@ -59,7 +59,10 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene, extended by the Euler sequence that occurs in the names of a sweep's outputs, if any."""
+    """Return the scene, extended by the Euler sequence in the names of a sweep's outputs, such as ``euler_ZYX_1@end``.
+
+    Without such a name the scene is returned unchanged.
+    """
     from dataclasses import replace
 
     sequences = []
@@ -135,7 +138,7 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
 
 
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return the meaning of a word after @, such as ``end``: reduction, time (s), and ending of the output's name."""
+    """Return reduction, time (s), and ending of the output's name for a word after @: ``end``, ``max``, ``2.5``."""
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:

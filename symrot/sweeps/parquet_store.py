@@ -73,11 +73,11 @@ class ParquetStore:
 
     @property
     def alone(self) -> str:
-        """A text that describes the statistics, if they are stored without the values of the outputs; else empty."""
+        """Always empty, because this store always has the values of the outputs."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of trajectories, one per chunk, that are still missing."""
+        """Return the pairs (start, stop) of trajectories, one per chunk, whose file does not exist yet."""
         return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
 
     def write(self, chunk: Chunk) -> None:
@@ -104,7 +104,7 @@ class ParquetStore:
         write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
 
     def _metadata(self) -> dict[str, str]:
-        """Return the labels of all columns; pandas shows them as ``attrs``."""
+        """Return unit, meaning and frame of all columns, as JSON in the file; pandas shows them as ``attrs``."""
         by_column = {
             name: variable
             for variable in self.header.variables
@@ -119,7 +119,7 @@ class ParquetStore:
         return {"PANDAS_ATTRS": json.dumps(labels)}
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
-        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""
         parts = []
         variable = next((each for each in self.header.variables if each.name == name), None)
         for first in range(start // self.header.rows * self.header.rows, stop, self.header.rows):
@@ -130,7 +130,7 @@ class ParquetStore:
         return np.concatenate(parts)
 
     def table(self, name: str) -> NDArray[Any] | None:
-        """Return an array of statistics, or None if there is none with this name."""
+        """Return the array of statistics called ``name``, or None if there is none."""
         path = self.path / STATISTICS
         if not path.exists():
             return None
@@ -142,7 +142,10 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are stored; for an attitude, each component has its own column."""
+        """Return whether the array ``name`` can be read from one column.
+
+        An attitude cannot, because each of its four components has a column of its own.
+        """
         return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
 
     def finish(self, tables: list[Table], alone: str) -> None:
@@ -164,7 +167,7 @@ class ParquetStore:
 
 
 def _parts(name: str) -> list[str]:
-    """Return the names of the four columns for the components of a quaternion."""
+    """Return the names of the four columns for the components of the quaternion ``name``."""
     return [f"{name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
 
 

@@ -30,13 +30,16 @@ BLOCK = 4  # words of 64 bits that Philox computes from one value of its counter
 
 
 def _key(seed: int, stream: str, words: int = 2) -> Words:
-    """Return the key for the random numbers of a named stream."""
+    """Return the key, an array of ``words`` 64-bit words, for the random numbers of the stream named ``stream``.
+
+    Each varied value has a stream of its own. Different seeds or names give different keys.
+    """
     sequence = np.random.SeedSequence(seed, spawn_key=tuple(stream.encode()))
     return sequence.generate_state(words, np.uint64).astype(np.uint64)
 
 
 def _words(seed: int, stream: str, start: int, stop: int) -> Words:
-    """Return the random 64-bit words ``start`` to ``stop`` of a stream."""
+    """Return the random 64-bit words number ``start`` to ``stop - 1`` of a stream, without computing those before."""
     bits = np.random.Philox(key=_key(seed, stream), counter=start // BLOCK)
     words: Words = bits.random_raw(stop - start // BLOCK * BLOCK)[start % BLOCK :]
     return words
@@ -61,7 +64,7 @@ def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int)
 
 
 def permuted(index: Words, count: int, keys: Words) -> Words:
-    """Return the images of some indices under a random permutation of 0 to count - 1 that ``keys`` determine.
+    """Return the images of ``index`` under a random permutation of 0 to ``count - 1``; ``keys`` determine it.
 
     A Feistel network permutes all numbers with an even number of bits. It is applied again to an index as long as the
     result is ``count`` or more (cycle walking); this gives a permutation of the numbers below ``count``.
@@ -100,7 +103,7 @@ class _Sobol:
         self._next = 0
 
     def points(self, start: int, stop: int) -> Floats:
-        """Return the points ``start`` to ``stop``.
+        """Return the points ``start`` to ``stop - 1``.
 
         A lock protects the position in the sequence, which threads share.
         """

@@ -47,12 +47,17 @@ def _unpacked(text: bytes) -> Job:
 
 
 def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
-    """Compute one chunk of a job that is given as pickled bytes; each process unpacks a job only once."""
+    """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`.
+
+    This is what a process of :func:`run_here` calls. Each process unpacks a job only once.
+    """
     return compute(_unpacked(text), start, stop)
 
 
 def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]:
     """Yield the chunks of a job in the order in which they are complete, computed by ``workers`` processes.
+
+    ``ranges`` are the pairs (start, stop) of the chunks. With one worker, this process computes them itself, in order.
 
     Raises
     ------

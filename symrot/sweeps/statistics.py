@@ -76,7 +76,10 @@ def _read(text: object) -> Statistic:
 def statistics_of(
     store: Store, statistics: Sequence[Statistic], variables: Sequence[Variable], progress: Callable[[str], None]
 ) -> list[Table]:
-    """Compute statistics of outputs in a complete store, over all trajectories that have a value, and return them."""
+    """Compute statistics of ``variables`` (outputs), over all trajectories that have a value; return them as arrays.
+
+    ``store`` must have all chunks of the sweep. ``progress`` is called with a text for each output.
+    """
     tables = []
     for variable in variables:
         progress(f"computing statistics of {variable.name} ..")
@@ -125,7 +128,7 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
 
 @dataclass(frozen=True)
 class _Survey:
-    """The number of values, the extremes and the mean of each column."""
+    """The number of values, the extremes and the mean of each column; a column is one sample time, or the only one."""
 
     number: NDArray[np.int64]
     low: Floats
@@ -148,12 +151,15 @@ def _survey(blocks: Blocks, size: int) -> _Survey:
 
 
 def _total(sums: Sequence[Floats], size: int) -> Floats:
-    """Return the total of the sums of the blocks, correctly rounded."""
+    """Return the total of each of ``size`` columns from the sums of the blocks of rows, correctly rounded."""
     return np.array([math.fsum(block[k] for block in sums) for k in range(size)])
 
 
 def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
-    """Return the standard deviation of each column, with divisor n, as numpy.std."""
+    """Return the standard deviation of each column, with divisor n, as numpy.std; missing values (NaN) do not count.
+
+    ``blocks`` returns the values in blocks of rows.
+    """
     sums = []
     for block in blocks():
         squares = (block - survey.mean) ** 2
@@ -163,7 +169,10 @@ def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
 
 
 def _histogram(blocks: Blocks, survey: _Survey, bins: int) -> tuple[NDArray[np.int64], Floats]:
-    """Return the counts, shape (bins, columns), and the edges, shape (bins + 1, columns), as numpy.histogram."""
+    """Return the counts, shape (bins, columns), and the edges, shape (bins + 1, columns), as numpy.histogram.
+
+    The edges of each column divide the range of its values into ``bins`` equal intervals.
+    """
     size = len(survey.mean)
     counts, edges = np.zeros((bins, size), dtype=np.int64), np.full((bins + 1, size), np.nan)
     for k in np.flatnonzero(survey.number):
@@ -179,7 +188,10 @@ def _histogram(blocks: Blocks, survey: _Survey, bins: int) -> tuple[NDArray[np.i
 
 
 def _percentiles(blocks: Blocks, survey: _Survey, shares: Floats) -> Floats:
-    """Return percentiles, shape (len(shares), columns), by linear interpolation as numpy.percentile."""
+    """Return percentiles, shape (len(shares), columns), by linear interpolation as numpy.percentile.
+
+    ``shares`` are the percentages, from 0 to 100.
+    """
     places = np.maximum(survey.number - 1, 0)[None, :] * (shares / 100)[:, None]
     lower = np.floor(places).astype(np.int64)
     upper = np.minimum(lower + 1, np.maximum(survey.number - 1, 0))
@@ -230,9 +242,10 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values of a column once, to advance all searches for values of given ranks.
+    """Read all values of a column once, to advance the ``searches`` for values of given ranks.
 
-    A search with few values in its interval is finished; for each other search, return searches in narrower intervals.
+    A search with few values in its interval is finished, and its results are written into ``values``, under (column,
+    rank). For each other search, return searches in narrower intervals.
     """
     open_searches = []
     for search in searches:
@@ -271,7 +284,10 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Split the interval of a search by the counts of values, and return the parts that contain its ranks."""
+    """Split the interval of a search into equal parts, and return as searches those parts that contain its ranks.
+
+    ``counts`` are the numbers of values in the parts, each of the length ``2^shift``.
+    """
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
     for rank, own in search.ranks.items():
@@ -287,7 +303,7 @@ _SIGN = np.uint64(2**63)
 
 
 def _keys(values: Floats) -> Keys:
-    """Return integers in the order of the doubles; -0.0 has the key of 0.0."""
+    """Return integers that have the same order as the doubles ``values``; -0.0 has the key of 0.0."""
     bits = np.ascontiguousarray(values + 0.0).view(np.uint64)
     keys: Keys = np.where(bits & _SIGN, ~bits, bits | _SIGN)
     return keys

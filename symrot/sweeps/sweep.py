@@ -285,7 +285,10 @@ def _whole(value: object, where: str, most: int) -> None:
 
 
 def _target(path: str | Path, keep: str) -> Path:
-    """Return the path of the file to write, after checks."""
+    """Return the path of the file to write; raise InputError for an unknown ending or a missing folder.
+
+    A Parquet file cannot be written if ``keep`` asks for statistics only.
+    """
     target = Path(path)
     if target.suffix.lower() not in STORES:
         raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
@@ -301,7 +304,10 @@ def _job(
     seed: object, texts: Sequence[str], t: ArrayLike | None, method: str, tolerance: float | None,
     folders: Sequence[str | Path],
 ) -> Job:  # fmt: skip
-    """Return the job that the arguments of a sweep describe."""
+    """Return the job (scene, design, outputs, times, accuracy) that the arguments of :func:`sweep` describe.
+
+    ``texts`` are the outputs, ``folders`` the table folders.
+    """
     own = scene_for(load_scene(scene, table_folders=folders), texts)
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)

@@ -75,7 +75,10 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
 
 
 def _path(name: str) -> Path:
-    """Return the path for a name such as ``body.part[0].radius``, or () if no number that can vary has this path."""
+    """Return the path for a name such as ``body.part[0].radius``: ``("body", "part", 0, "radius")``.
+
+    It is () if no number that can vary has this path.
+    """
     path = path_of(name)
     return path if len(path) > 1 and path[0] in VARIED_TABLES else ()
 
@@ -124,7 +127,7 @@ def _refuse(name: str, content: Content) -> NoReturn:
 
 
 def _numbers_in(content: Content) -> list[str]:
-    """Return the paths of all numbers in the tables of a scene file whose values can vary."""
+    """Return the paths, as texts, of all numbers in a scene file that a sweep can vary, for hints in error messages."""
 
     def walk(value: Any, place: str) -> list[str]:
         if isinstance(value, Mapping):

@@ -58,9 +58,9 @@ class ZarrStore:
         self._open: dict[str, Any] = {}
 
     def _continued(self, zarr: Any, header: Header) -> Header:
-        """Return the header for continuing a sweep, with the size of its stored chunks.
+        """Return the header for continuing the sweep in an existing folder: chunks have the size of those stored there.
 
-        Raise InputError for another sweep.
+        Raise InputError if the folder has the results of another sweep, or something else.
         """
         from dataclasses import replace
 
@@ -105,7 +105,7 @@ class ZarrStore:
         return self._open[name]
 
     def pending(self) -> list[tuple[int, int]]:
-        """Return the ranges of trajectories, one per chunk, that are still missing."""
+        """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
         status = self._array(STATUS)
         return [each for each in self.header.ranges() if status[each[0]] == NOT_COMPUTED]
 
@@ -119,17 +119,17 @@ class ZarrStore:
         self._array(STATUS)[rows] = chunk.status
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
-        """Return the values of one array for the trajectories ``start`` to ``stop``."""
+        """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""
         values: NDArray[Any] = self._array(name)[start:stop]
         return values
 
     def table(self, name: str) -> NDArray[Any] | None:
-        """Return an array of statistics, or None if there is none with this name."""
+        """Return the array of statistics called ``name``, or None if there is none."""
         names = [STATUS, MESSAGE, *(variable.name for variable in self.header.variables)]
         return None if name in names or name not in self._group else np.asarray(self._group[name][...])
 
     def has(self, name: str) -> bool:
-        """Return whether the values of an array are stored."""
+        """Return whether the values of the array ``name`` are stored."""
         return name in self._group
 
     @property

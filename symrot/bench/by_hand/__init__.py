@@ -8,5 +8,5 @@ BY_HAND = Path(__file__).parent
 
 
 def text_by_hand(name: str) -> str:
-    """Return the text of a handwritten C file of this folder."""
+    """Return the text of a C file of this folder, such as ``free_body.c``, that was written by hand for comparison."""
     return (BY_HAND / name).read_text(encoding="utf-8")

@@ -18,7 +18,10 @@ _LOADED = Path("/proc/self/maps")
 
 @cache
 def _function(name: str) -> Any:
-    """Return heyoka's compiled function for the textbook formulas of a kernel."""
+    """Return heyoka's compiled function for the textbook formulas of the kernel ``name``.
+
+    It also computes ``LANES`` samples at once, in a SIMD vector.
+    """
     import heyoka
 
     variables = dict(zip(input_names(name), heyoka.make_vars(*input_names(name)), strict=True))
@@ -51,7 +54,10 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
 
 
 def _linked(directory: Path, index: int, code: bytes) -> Any:
-    """Link heyoka's object code into a library in ``directory``; return the address of its function."""
+    """Link heyoka's object code into a shared library in ``directory``; return the address of its function.
+
+    ``index`` numbers the libraries, so that each has a file of its own.
+    """
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"
     subprocess.run(

@@ -79,13 +79,16 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the name of the kernel that a kernel with derivatives extends, and its derivatives as (output, input)."""
+    """Return the name of the kernel whose derivatives the kernel ``name`` also computes, and these derivatives.
+
+    Each derivative is a pair (output, input) of names; there are none for a kernel without derivatives.
+    """
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
     return name.split(BY)[0], [(output, variable) for output, variable in entries]
 
 
 def textbook(name: str) -> list[sympy.Expr]:
-    """Return the textbook formulas of a kernel, in the order of its outputs; derivatives follow the values.
+    """Return the formulas of a kernel as textbooks print them, in the order of its outputs, derivatives last.
 
     Raises
     ------
@@ -122,7 +125,11 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return a program that computes the common terms first and then the results, without further simplification."""
+    """Return a program of the kernel ``name`` that computes the common terms first and then the results.
+
+    ``common`` are pairs (symbol, value) from another tool, such as SymPy's ``cse``, and ``results`` the outputs in
+    these symbols. Nothing is simplified further, so that the operations are those of the tool.
+    """
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (products(to_node(value)) for value in results), strict=True))
@@ -172,9 +179,9 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 
 
 def counted(text: str, name: str) -> Counter[str]:
-    """Return the number of operations of each kind in a C function; equal operations count only once.
+    """Return the number of operations of each kind in the C function of the kernel ``name`` in ``text``.
 
-    The C code is parsed by :mod:`symrot.certificates.readback`.
+    Equal operations count only once. The C code is parsed by :mod:`symrot.certificates.readback`.
     """
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
@@ -223,7 +230,10 @@ def casadi_function(name: str, program: Callable[[str], Program] = textbook_prog
 
 
 def casadi_counts(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
-    """Return a function of CasADi in which common subexpressions are computed once, and its operations by kind."""
+    """Return a function of CasADi from ``x`` to ``outputs``, and its number of operations by kind.
+
+    Common subexpressions are computed once.
+    """
     import casadi
 
     function = casadi.Function("peer", [x], [casadi.densify(casadi.cse(outputs))])

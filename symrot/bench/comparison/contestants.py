@@ -52,7 +52,10 @@ class Contestant(NamedTuple):
     quick: bool = True  # whether the contestant is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
-        """Return the contestant restricted to the tolerances that it supports; a closed form has no tolerance."""
+        """Return the contestant, restricted to those of the ``tolerances`` that are not below its smallest one.
+
+        A closed form has no tolerance and is returned unchanged.
+        """
         least = self.tolerances[-1]
         return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
@@ -61,9 +64,9 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the function to be timed for the closed form.
+    """Return the function that is timed for the closed form: from an end time, s, to the state there and the steps.
 
-    Each call also computes the constants from the initial state.
+    Each call also computes the constants of the closed form from the initial state. ``tolerance`` has no effect.
     """
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
@@ -81,9 +84,10 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return the function ``prepare`` of a contestant that uses a method of symrot.
+    """Return the function ``prepare`` of the contestant that uses one of symrot's methods, such as ``"taylor"``.
 
-    ``prepare`` makes a propagator, which is not timed, and returns a function that calls it.
+    ``prepare(problem, tolerance)`` makes a propagator, which is not timed, and returns the function that is timed: from
+    an end time, s, to the state there and the number of steps.
     """
 
     def prepare(problem: Problem, tolerance: float) -> Run:
@@ -99,7 +103,10 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the last integrated states of a trajectory, or, if it has a closed form, the last state of the body."""
+    """Return the end state of a trajectory with one sample: the integrated states at this sample.
+
+    For a closed form, which integrates nothing, it is the state of the body (angular velocity and quaternion).
+    """
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]
@@ -195,7 +202,9 @@ GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
 
 
 def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
-    """Return the contestants in a comma-separated list of groups, or all contestants if ``methods`` is None.
+    """Return the contestants of ``methods``, a comma-separated list of groups (:data:`GROUPS`); None means all.
+
+    With ``quick``, heyoka runs in its default setting only.
 
     Raises
     ------

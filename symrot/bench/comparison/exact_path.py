@@ -44,7 +44,10 @@ def as_mpf(value: Any) -> Any:
 
 
 def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
-    """Return the parameters of a kernel by name, from the exact constants of the scene."""
+    """Return the exact parameters of a kernel by name, such as (C - B)/A, from the exact constants of the scene.
+
+    ``parameters`` are pairs (name, formula in the constants); ``plan`` has the values of the constants.
+    """
     values = {"pi": number.PI, **plan.constants}
     return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
 
@@ -88,7 +91,7 @@ class ExactPath:
         self._end: tuple[Any, list[Any]] = (self.t0, self.start)
 
     def _advance(self) -> None:
-        """Add one Taylor step at the end of the path."""
+        """Add one step of the Taylor series at the end of the path computed so far."""
         now, state = self._end
         known = self.parameters | {"t": now} | dict(zip(self.system.states, state, strict=True))
         series = coefficients(self.system, ORDER, known, FUNCTIONS, as_mpf)
@@ -169,7 +172,7 @@ class ExactPath:
         )
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near t at which omega has its initial value, or None if Newton's method fails."""
+        """Return the time near ``t`` at which omega has its initial value; None if Newton's method diverges."""
         start = self.start[: self.rates]
         self.state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]

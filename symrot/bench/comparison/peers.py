@@ -19,7 +19,10 @@ FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", 
 
 
 def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return a right-hand side in heyoka's form, with the values of parameters compiled in as numbers."""
+    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with parameters as numbers in it.
+
+    ``rates`` is the program that symrot derived for dy/dt; ``parameters`` are its parameters' values by name.
+    """
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]

@@ -100,7 +100,11 @@ class Problem:
 
     @staticmethod
     def worst(states: Sequence[State], exact: Sequence[State]) -> float:
-        """Return the largest error of a method at several times."""
+        """Return the largest error of a method at several times.
+
+        ``states`` are computed by the method, ``exact`` are those of the reference. See :meth:`error` for the error at
+        one time.
+        """
         largest = max(float(np.linalg.norm(state.omega)) for state in exact)
         return max(
             Problem.error(computed, expected, REST * largest) for computed, expected in zip(states, exact, strict=True)

@@ -53,7 +53,10 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return the number of rounds in which a run of a given duration, s, is timed."""
+    """Return the number of rounds, ``rounds`` or fewer, in which a run that takes ``seconds`` is timed.
+
+    A run of more than :data:`SLOW` s is timed in at most :data:`SLOW_ROUNDS` rounds.
+    """
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 
@@ -62,7 +65,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the total time, s, of all rounds."""
+    """Return an estimate of the total time, s, of all rounds, from the first run of each entry."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 
@@ -73,7 +76,7 @@ def race(
 ) -> None:
     """Time all runs alternately, and append the measured seconds to the :class:`Measured` entry of each run.
 
-    ``turn`` is called with the number of a round before it begins.
+    ``entries`` are pairs (entry, function to be timed). ``turn`` is called with the number of a round before it begins.
     """
     collecting = gc.isenabled()
     gc.disable()

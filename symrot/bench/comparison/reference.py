@@ -146,7 +146,11 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
 
 
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
+    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache.
+
+    ``say`` is called with progress messages. ``_Unavailable`` is raised if the torque is not smooth, or if the
+    computation would take more than ``seconds``.
+    """
     import mpmath
 
     rough = non_smooth_torque(problem.plan)
@@ -167,7 +171,10 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
 
 
 def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
-    """Return the integrated states at the times of comparison, by Taylor series step by step."""
+    """Return the integrated states at the times of comparison by Taylor series, one row for each time.
+
+    ``_Unavailable`` is raised as soon as the whole motion is expected to take more than ``seconds``.
+    """
     path, clock = ExactPath(problem.plan, problem.kernel), process_time()
 
     def watch(now: Any) -> None:
@@ -214,18 +221,28 @@ def longer(source: str) -> str:
 
 
 def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations."""
+    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations.
+
+    ``_Unavailable`` is raised if that takes more than ``seconds``, or if the machine has no long double.
+    """
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
     return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
 
 
 def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
+    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations.
+
+    ``_Unavailable`` is raised as for :func:`_long_double`.
+    """
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the reference states by fixed steps in long double, which are halved until the result stops changing."""
+    """Return the reference states by fixed steps in long double, which are halved until the result stops changing.
+
+    ``name`` is the method and ``files`` are the C files that contain it. ``_Unavailable`` is raised if this takes more
+    than ``seconds``, or if there is no C compiler or no long double that is longer than double.
+    """
     if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
@@ -279,8 +296,9 @@ def _fixed_steps(
 ) -> Callable[[int], Any]:
     """Return a function that takes a number of steps and returns the integrated states at the times of comparison.
 
-    The steps are shared among the intervals of the grid in proportion to their lengths, but each interval gets at
-    least ``steps/fewest`` steps.
+    The motion is computed by the method ``name`` in the C ``files``. The steps are shared among the intervals of the
+    times ``grid``, at which a step must end, in proportion to their lengths, but each interval gets at least
+    ``steps/fewest`` steps.
     """
     parts = [
         general.kernel.source,

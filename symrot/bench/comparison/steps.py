@@ -40,7 +40,10 @@ FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log")
 
 
 def _plain_rates(rates: Program) -> Program:
-    """Return the rates as one formula for each output, without temporaries."""
+    """Return the rates as one formula for each output, without named common terms, as equations of motion are printed.
+
+    The other tools then look for common terms themselves.
+    """
     known: dict[str, Node] = {}
 
     def explicit(node: Node) -> Node:
@@ -63,7 +66,7 @@ def _inputs(step: StepText) -> list[str]:
 
 
 def _symforce(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of the step whose common terms SymForce shares, and its operations."""
+    """Return the C text of one step, in which SymForce found the common terms, and its operations by kind."""
     sf: Any = import_module("symforce.symbolic")
     values = {name: sf.Symbol(name) for name in _inputs(step)}
     functions = {name: getattr(sf, name) for name in FUNCTIONS}
@@ -89,7 +92,7 @@ def _symforce(step: StepText) -> tuple[str, Counter[str]]:
 
 
 def _casadi(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of the step by CasADi, and its operations."""
+    """Return the C text of one step as CasADi generates it, and its operations by kind."""
     import casadi
 
     names = _inputs(step)
@@ -117,7 +120,10 @@ PEERS: dict[str, Callable[[StepText], tuple[str, Counter[str]]]] = {"SymForce": 
 
 
 def _driver(step: StepText) -> str:
-    """Return a C function that makes one step from each of n states, and repeats all this a given number of times."""
+    """Return a C function that makes one step from each of n states, and repeats all this a given number of times.
+
+    It is appended to the text of each tool's step, so that all are timed in the same loop.
+    """
     signature = step_signature(step.certified.rates, step.name)
     size = signature.argument("next").size
     called = ["t", f"x + {size}*k", *(["p"] if any(a.name == "p" for a in signature.arguments) else []), "dt",
@@ -136,7 +142,10 @@ void symrot_repeat(size_t repeats, size_t n, double t, const double *x, const do
 
 
 def _run(step: StepText, text: str) -> Callable[[], tuple[float, Any]]:
-    """Return a function that returns seconds per step, and the states after the steps."""
+    """Compile one tool's step, and return a function that returns seconds per step, and the states after the steps.
+
+    ``text`` is the C text of the step; ``step`` describes its arguments.
+    """
     loaded = ctypes.CDLL(
         str(build_cache.build(f"#include <math.h>\n{text}{_driver(step)}", f"bench_{step.name}", FLAGS))
     )
@@ -196,7 +205,10 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, float]:
-    """Return the least seconds per step by tool; raise AssertionError if two tools differ."""
+    """Return the least seconds per step by tool; raise AssertionError if two tools' states after a step differ.
+
+    ``texts`` are the C texts of the step by tool; each is timed ``rounds`` times.
+    """
     runs = {tool: _run(step, text) for tool, text in texts.items()}
     results = {tool: np.array(run()[1]) for tool, run in runs.items()}
     for tool, result in results.items():

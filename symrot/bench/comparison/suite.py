@@ -79,6 +79,9 @@ def run(
 ) -> tuple[dict[str, Any], list[str]]:
     """Study all motions of the suite, write the files, and return the results as data for JSON and as lines of text.
 
+    ``directory`` is the folder of the files; the other arguments are those of
+    :func:`~symrot.bench.comparison.work_precision.study`.
+
     Raises
     ------
     InputError
@@ -142,7 +145,8 @@ def _short(value: Any, name: str = "") -> Any:
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return, for each other program, the median and the smallest ratio of its time to symrot's time over all motions.
 
-    There is one ratio for each motion and each power of ten of the error.
+    ``studies`` are the results of work-precision studies by name of the motion. There is one ratio for each motion and
+    each power of ten of the error.
     """
     rows = []
     for peer in PEERS:
@@ -164,7 +168,10 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio, with the smallest ratio in brackets; both have at least two digits."""
+    """Return the text of a median ratio, with the smallest ratio in brackets, such as ``12 (3.4)``.
+
+    Ratios from 10 on are printed without decimals, the others with one.
+    """
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

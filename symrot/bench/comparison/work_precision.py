@@ -127,7 +127,11 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run of every contestant with its error, and the skipped contestants with the reasons."""
+    """Return every run of every contestant with its error, and the skipped contestants with the reasons.
+
+    A run is a contestant at one tolerance. ``exact`` are the reference states at the times of comparison; ``effort``
+    limits the number of tolerances.
+    """
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -167,7 +171,10 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
 
 
 def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
-    """Return the fastest run whose error is at most ``error``, or None if there is no such run."""
+    """Return the fastest of the runs whose error is at most ``error``, or None if there is no such run.
+
+    Each of the ``runs`` has the entries ``error`` and ``seconds``.
+    """
     good = [run for run in runs if run["error"] <= error]
     return min(good, key=lambda run: float(run["seconds"]), default=None)
 
@@ -175,7 +182,8 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
     """Return, for each power of ten of the error (decade), the fastest run, and all methods' times relative to it.
 
-    Decades below ``floor``, the difference between the references, are left out.
+    Each row is a row of the printed table. Decades below ``floor``, the difference between the references, are left
+    out.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
@@ -200,8 +208,9 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return, for each other program (peer), the median and the least ratio of its time to symrot's time.
 
-    There is one ratio for each decade of the error; the results are given for symrot's steppers and for all its
-    methods. If heyoka ran with several settings, its fastest setting at each decade counts as one more peer.
+    ``rows`` are those of :func:`decades`, so there is one ratio for each decade of the error. The results are given for
+    symrot's steppers and for all its methods. If heyoka ran with several settings, its fastest setting at each decade
+    counts as one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
@@ -222,7 +231,10 @@ def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return, for each decade of the error, the fastest time of ``theirs`` divided by the fastest time of ``ours``."""
+    """Return, for each decade of the error, the fastest time of ``theirs`` divided by the fastest time of ``ours``.
+
+    ``ours`` and ``theirs`` are names of methods. A decade that one of the two sides does not reach is left out.
+    """
     ratios = {}
     for row in rows:
         sides = [[row["methods"][name]["seconds"] for name in names if name in row["methods"]]

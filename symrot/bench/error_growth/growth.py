@@ -71,11 +71,15 @@ class Track:
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return a trajectory of the motion made of the states that a method computed."""
+        """Return the states that a method computed, from the start on, as a trajectory with the track's times.
+
+        If the method stopped early, there are fewer states than times. ``motion`` is needed if the states are those of
+        another motion than the track's own.
+        """
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
-        """Return the errors of a method along the motion, from its trajectory."""
+        """Return the errors of a method along the motion, from its trajectory; ``method`` is the name of the curve."""
         count, blank = len(trajectory), np.full(len(self.times), np.nan)
         q, r = trajectory.quaternion, self.truth.quaternion[:count]
         chord = np.minimum(*(np.linalg.norm(q - sign * r, axis=1) for sign in (1, -1)))
@@ -179,7 +183,10 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the error curves of all methods that can compute this motion."""
+    """Return the error curves of all methods that can compute this motion.
+
+    With ``long``, each method is run for more revolutions. ``say`` is called with progress messages.
+    """
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
@@ -192,9 +199,10 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions.
+    """Return the exponent k of errors that grow as t^k, by a fit of their logarithms after :data:`FROM` revolutions.
 
-    Return nan if there are too few points.
+    Errors above 0.5 are not used, since such a motion has nothing in common with the exact one. Return nan if fewer
+    than four points are left.
     """
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:

@@ -97,7 +97,11 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion, and return, for each scheme and step size, how the box changes."""
+    """Move the corners of a box along a motion, and return, for each scheme and step size, how the box changes.
+
+    ``stop`` is the end time, s; ``steps`` are the step sizes, s; ``size`` are the edges of the box. The schemes are
+    steps along the tangent and along the secant.
+    """
     points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
@@ -120,11 +124,10 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain of a set of points, from the ratios of all distances after and before.
+    """Return the strain of a set of points, from all distances between them before (``first``) and after (``last``).
 
-    It is the largest ratio divided by the least ratio, minus 1.
-
-    A uniform change of size thus has the strain zero.
+    It is the largest ratio of a distance after to the distance before, divided by the least ratio, minus 1. A uniform
+    change of size thus has the strain zero.
     """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))

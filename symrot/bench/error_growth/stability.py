@@ -192,7 +192,7 @@ def _worst(values: Iterable[float | None]) -> float | None:
 
 
 def lines(results: Any) -> list[str]:
-    """Return the report on numerical stability as lines of text."""
+    """Return the report on numerical stability as lines of text; ``results`` come from :func:`stability`."""
     return [*_growth_lines(results["growth"]), "", *_pass_lines(results["passes"]), "", *_point_lines(results)]
 
 

@@ -21,7 +21,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 
 
 def figure(results: Any) -> Any:
-    """Return the report on numerical stability as a Matplotlib figure."""
+    """Return the report on numerical stability as a Matplotlib figure; ``results`` come from ``stability``."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -104,7 +104,10 @@ def _curves(axes: Any, data: Any, what: str) -> None:
 
 
 def _slopes(axes: Any, at: Any, powers: tuple[float, ...]) -> None:
-    """Draw lines that grow as powers of the time, for comparison with the errors."""
+    """Draw lines that grow as the ``powers`` of the time, such as t and t^2, for comparison with the errors.
+
+    ``at`` are the times; the lines start at the size of rounding errors.
+    """
     names = {0.5: "$t^{1/2}$", 1.0: "$t$", 1.5: "$t^{3/2}$", 2.0: "$t^2$"}
     for power in powers:
         start = 2e-15 if power < 1.2 else 3e-14
@@ -159,5 +162,5 @@ def _points(axes: Any, rows: Any) -> None:
 
 
 def save(results: Any, path: Path) -> None:
-    """Write the plot of the report to a file."""
+    """Draw the report ``results`` on numerical stability, and write the figure to the file ``path``."""
     save_page(figure(results), path, 140)

@@ -95,12 +95,16 @@ def _displayed(text: str) -> str:
 
 
 def _inline_display(latex: str) -> str:
-    """Return MathML that displays a formula on a line of its own and is allowed inside a paragraph."""
+    """Return MathML that displays a formula on a line of its own, with ``span`` instead of ``div``.
+
+    A paragraph of HTML cannot contain a ``div``.
+
+    """
     return display(latex).replace("<div ", "<span ").replace("</div>", "</span>")
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return the data with which the script of the page grades numbers: answers, usual mistakes and units."""
+    """Return the data with which the script of the page grades numbers, by question (``1a``): answer, slips, unit."""
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,

@@ -51,7 +51,7 @@ def latex_sheet(exercises: Sequence[Exercise]) -> str:
 
 
 def prose(text: str) -> str:
-    """Convert Markdown to LaTeX: formulas are copied, and wide displayed formulas are scaled to the line width."""
+    """Convert Markdown to LaTeX: formulas are copied, displayed formulas wider than a line are scaled to fit."""
     pieces = re.split(r"(\$\$.+?\$\$|\$[^$]+\$)", text)
     return "".join(_piece(piece) for piece in pieces)
 

@@ -80,7 +80,10 @@ def _formula(element: Element, question: Question) -> None:
 
 
 def _spellings(formula: str) -> tuple[str, ...]:
-    """Return the spellings of a formula that Moodle accepts; ``*`` is escaped, because Moodle reads it as any text."""
+    """Return the spellings of a formula that Moodle accepts as answers: with ``^`` for powers, with and without spaces.
+
+    ``*`` is escaped, because Moodle reads it as any text.
+    """
     powers = formula.replace("**", "^")
     return tuple(text.replace("*", r"\*") for text in dict.fromkeys((powers, powers.replace(" ", ""))))
 

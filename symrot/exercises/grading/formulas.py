@@ -79,7 +79,10 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
 
 
 def _misfit(own: str, truth: str, question: Question) -> str:
-    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree."""
+    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree.
+
+    ``own`` is the student's formula, ``truth`` the right one; ``question`` has the units of the symbols.
+    """
     try:
         dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
     except InputError:  # LaTeX in which the names of the units do not occur
@@ -98,8 +101,9 @@ def _verdict(
 ) -> Verdict:
     """Return the checker's verdict on the claim that a student's formula ``own`` equals the right formula ``truth``.
 
-    ``units`` maps symbols to their units. By default the checker is not told the units, so that it also finds other
-    errors in a formula whose units are wrong.
+    With ``repair``, the checker also looks for a change that makes the formula right. ``units`` maps symbols to their
+    units. By default the checker is not told the units, so that it also finds other errors in a formula whose units are
+    wrong.
     """
     latex = "\\" in own
     assume = [f"{name} > 0" for name in question.positive if not latex]
@@ -108,6 +112,8 @@ def _verdict(
 
 def _sides(answer: str, question: Question) -> tuple[str, str]:
     """Return the student's formula and the right formula, both as LaTeX or both as typed text.
+
+    The name of the quantity and ``=`` in front of the student's formula are dropped.
 
     Raises
     ------
@@ -143,7 +149,10 @@ def _plain(text: str) -> str:
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:
-    """Return a known name unchanged; write several names without a space as a product, ``mgl`` -> ``m*g*l``."""
+    """Return a ``known`` name unchanged; write several names without a space as a product, ``mgl`` -> ``m*g*l``.
+
+    ``match`` is a name in the student's formula, with a power or a division sign beside it, which are respected.
+    """
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
     for single in (name, spelled, name.replace("_", "")):
@@ -164,7 +173,10 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
-    """Return the code of the student's error, such as ``"inverse"``, a key of ``FORMULA_FAULTS``."""
+    """Return the code of the student's error, such as ``"inverse"`` for 1/x instead of x, a key of ``FORMULA_FAULTS``.
+
+    ``verdict`` is the checker's verdict on the claim that the formula ``own`` equals the right formula ``truth``.
+    """
     if "\\" not in own:
         if _holds(f"1/({own})", truth, question):
             return "inverse"
@@ -203,9 +215,9 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether a modified formula of the student equals the right formula.
+    """Return whether a modified formula of the student, such as its inverse, equals the right formula ``truth``.
 
-    Return False if it has no value, such as 1/0.
+    Return False if it has no value, such as 1/0. The message can then say what the student confused.
     """
     try:
         return _is_right(_verdict(own, truth, question, repair=False))

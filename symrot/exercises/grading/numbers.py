@@ -93,7 +93,10 @@ def _readings(answer: str) -> Iterator[_Number]:
 
 
 def _read(text: str) -> _Number | None:
-    """Return the number and unit in a text, or None if the text does not begin with a number."""
+    """Return the number and unit in a text such as ``0.5 kg m^2``.
+
+    Return None if the text is not a number, or a number followed by a unit.
+    """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")
         if end < len(text) and (text[end - 1].isalnum() and text[end].isalnum() and not text[end - 1].isdigit()):
@@ -119,7 +122,10 @@ def _value(text: str) -> float | None:
 
 
 def _digits(text: str) -> int | None:
-    """Return the number of significant digits of a decimal, or None for a fraction or root, which is exact."""
+    """Return the number of significant digits of a decimal, 3 for ``0.0120``.
+
+    Return None for a fraction or root, which is exact.
+    """
     plain = _PLAIN.fullmatch(text)
     if plain is None:
         return None
@@ -127,7 +133,10 @@ def _digits(text: str) -> int | None:
 
 
 def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
-    """Return the mark for one reading of a typed number."""
+    """Return the mark for one reading of a typed number, such as 1,234 read as 1.234 or as 1234.
+
+    ``key`` and ``answer`` are copied to the mark; ``question`` has the right number.
+    """
     truth = float(question.decimal)
     own = unit_of(question.unit) if question.unit else None
     if number.unit is not None and number.unit.dimension != (own.dimension if own else {}):
@@ -168,7 +177,10 @@ def _is_right(value: float, truth: float, half_digit: float, digits: int | None)
 
 
 def _faults(value: float, truth: float, question: Question) -> Iterator[tuple[str, dict[str, str]]]:
-    """Yield (error code, words for the message) for each usual error that explains a wrong number, likeliest first."""
+    """Yield (error code, words for the message) for each usual error that explains a wrong number, likeliest first.
+
+    ``value`` is the student's number and ``truth`` the right one, both in the unit of the question.
+    """
     if _near(-value, truth):
         yield "sign", {}
     for slip, number in question.slips.items():

@@ -110,7 +110,7 @@ TOPICS: dict[str, tuple[str, ...]] = {
 
 
 def template(name: str) -> Template:
-    """Return the template function with a given name."""
+    """Return the template with a given name, a function from a random number generator to a problem."""
     made: Template = getattr(import_module(f"{__name__}.{topic_of(name)}"), name)
     return made
 

@@ -16,7 +16,7 @@ POINT = tuple(quantity(each, "1 2 3 4 5", "m", "coordinate") for each in (x, y, 
 
 
 def _axis(random: Random) -> tuple[Matrix, str]:
-    """Return a random unit vector with rational components, and its LaTeX text."""
+    """Return a random unit vector with rational components, and its LaTeX text for the statement of the exercise."""
     components = random.choice(AXES)
     length = sum(component**2 for component in components) ** Rational(1, 2)
     return Matrix(components) / length, rf"\tfrac1{length}({', '.join(map(str, components))})"

@@ -19,7 +19,7 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return, as quantities with possible numbers, the angles and rates that occur in the given formulas."""
+    """Return the angles and rates that occur in ``formulas`` as given quantities with possible numbers."""
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(
@@ -105,7 +105,10 @@ def matrix_entry(random: Random) -> Problem:
 
 
 def _product(sequence: str) -> Matrix:
-    """Return the product of the matrices of a sequence's three rotations, multiplied one by one."""
+    """Return the matrix of a sequence's three rotations as the product of their matrices, multiplied one by one.
+
+    A solution compares it with the direction cosine matrix that symrot derives.
+    """
     factors = (dcm(axis + _other(axis) + axis, (angle, 0, 0)) for axis, angle in zip(sequence, angles, strict=True))
     product = Matrix.eye(3)
     for factor in factors:

@@ -20,7 +20,10 @@ RADIUS = quantity(R, RADII, "mm", "radius")
 
 
 def _about(body: Solid, point: tuple[Expr, ...], axis: int, distance: Expr) -> tuple[Expr, tuple[Line, ...]]:
-    """Return a body's moment of inertia about an axis through a point, and the solution lines that derive it."""
+    """Return a body's moment of inertia about an axis through a point, and the solution lines that derive it.
+
+    The axis has the direction ``axis`` (0, 1 or 2 for x, y, z) and the ``distance`` from the centre of mass.
+    """
     moment = body.inertia_about(point)[axis, axis]
     law = "The parallel axis theorem, from the centre of mass to the axis."
     return moment, chain("I_O", law, moment, written_sum(body.inertia[axis, axis], m * distance**2), moment, ADD)
@@ -59,7 +62,7 @@ SOLIDS = ("cylinder", "sphere", "cone", "spherical_shell", "disk", "ring")
 
 
 def _second_moments(body: Solid) -> tuple[Expr, Expr]:
-    """Return the integrals of x^2 and y^2 over the mass of a body."""
+    """Return the integrals of x^2 and of y^2 over the mass of a body; their sum is I_zz."""
     steps = {step.quantity: step for step in body.steps}
     return steps["second moment xx"].value, steps["second moment yy"].value
 

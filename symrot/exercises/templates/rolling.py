@@ -20,7 +20,10 @@ def _body(random: Random) -> tuple[str, Expr]:
 
 
 def _motion(moment: Expr) -> tuple[Expr, Expr]:
-    """Return the acceleration and the friction force of a body that rolls down an incline."""
+    """Return the acceleration and the friction force of a body that rolls down an incline without slipping.
+
+    ``moment`` is its moment of inertia about its own axis.
+    """
     equations = (m * a_x - m * g * sin(alpha) + F_x, moment * a_x / R - F_x * R)
     motion = solve(equations, (a_x, F_x), dict=True)[0]
     return motion[a_x], motion[F_x]

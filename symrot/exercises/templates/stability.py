@@ -24,7 +24,10 @@ LAW = (
 
 
 def _factor(axis: int) -> Expr:
-    """Return the factor mu in ``x'' = mu x``, the equation of small disturbances of rotation about a principal axis."""
+    """Return the factor mu in ``x'' = mu x``, the equation of small disturbances of rotation about a principal axis.
+
+    ``axis`` is 0, 1 or 2. The rotation is unstable if mu is positive.
+    """
     rates = euler_equations(torque=None)
     one, two = (n for n in range(3) if n != axis)
     jacobian = Matrix([[rates[i].diff(OMEGA[j]) for j in (one, two)] for i in (one, two)])

@@ -81,7 +81,10 @@ class Event(NamedTuple):
 
     @property
     def node(self) -> Node:
-        """The formula as a tree of operations."""
+        """The formula as a tree of operations: ``("-", ("symbol", "t"), ("symbol", "q0"))`` for ``t - q0``.
+
+        For an equation ``lhs == rhs`` it is the tree of lhs - rhs.
+        """
         left, equals, right = self.formula.partition("==")
         node = parse(left, "event")
         return ("-", node, parse(right, "event")) if equals else node

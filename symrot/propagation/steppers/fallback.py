@@ -48,7 +48,10 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion of which SciPy computes a part: its ends, s, and the number of evaluations before the part."""
+    """The whole motion of which SciPy computes a part: its ends, s, and the number of evaluations before the part.
+
+    The limit of evaluations holds for the whole motion.
+    """
 
     start: float
     end: float
@@ -81,6 +84,8 @@ SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # the smallest relative tolera
 
 def method_name(text: str) -> str:
     """Return SciPy's name of a method that is given as ``"scipy"``, ``"scipy:LSODA"`` or ``"LSODA"``.
+
+    For ``"scipy"`` alone it is ``"DOP853"``.
 
     Raises
     ------
@@ -199,7 +204,7 @@ class FallbackRecording(Recording):
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end.
+        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end, in the order of the motion.
 
         There is one array for each segment between switching times.
         """
@@ -216,7 +221,10 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Write the states at ``times`` into ``states``; each is computed by the piece in which its time lies."""
+    """Write the states at ``times`` into ``states``, shape (n, N), each by the piece in which its time lies.
+
+    A piece is (first time, last time, SciPy's solution).
+    """
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -235,7 +243,10 @@ class _ShiftedSolution:
 
 
 class _Integration:
-    """Integration of one motion by SciPy: its checked arguments, and its cost so far."""
+    """Integration of one motion by SciPy: its checked arguments, and its cost so far.
+
+    The arguments are those of :func:`integrate`. After a motion has stopped early, ``pieces`` holds the part before.
+    """
 
     def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()
@@ -282,7 +293,11 @@ class _Integration:
         return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return the indices and the states of those sample times that the motion reached before it stopped early."""
+        """Return the indices and the states of those sample times that the motion reached before it stopped early.
+
+        All ``times`` lie after t0 or all before it. Without a final pass of the integration, only a time equal to t0
+        counts.
+        """
         pieces = self.pieces if self.final else []  # results of the coarse pass are not returned
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
@@ -345,7 +360,9 @@ class _Integration:
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
         """Let SciPy integrate over a segment, as far as it can follow the motion; append the solution to ``pieces``.
 
-        The bounds of the rates limit its steps, so that no step passes over a short pulse.
+        ``y`` is the state at its start; ``rtol`` and ``atol`` are SciPy's tolerances. The bounds of the rates limit its
+        steps, so that no step passes over a short pulse: ``bars`` holds, for each block of states, the error that a
+        step may cause in this way.
         """
         import scipy.integrate
 
@@ -441,7 +458,10 @@ class _Integration:
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Raise IntegrationStopped if the rest of the motion would take far more evaluations than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more evaluations than the limit.
+
+        ``t`` is the time reached and ``stop`` the end of the motion, s.
+        """
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:
@@ -459,7 +479,9 @@ class _Integration:
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
         """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque.
 
-        The step begins at ``now``, the time since the epoch.
+        The step, of length ``step``, begins at ``now``, the time since the epoch, which is the scene time t, with the
+        states y. ``dense`` is SciPy's interpolant of the step, and ``bars`` the error, per block of states, that a step
+        may miss. The result is ``step`` itself if the whole step is proven.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()

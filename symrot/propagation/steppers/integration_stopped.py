@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 class IntegrationStopped(PropagationError):
-    """Raised if a motion to the time ``stop`` cannot be followed beyond the time t, s."""
+    """Raised if a motion to the time ``stop`` cannot be followed beyond the time t, s; ``reason`` says why."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
         way = "" if stop is None else f" on the way to {stop!r} s"
@@ -62,7 +62,11 @@ class Samples(NamedTuple):
 def add_samples(
     error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
 ) -> None:
-    """Store the samples computed before an error or interrupt, and their cost, as ``samples`` of the exception."""
+    """Store the samples computed before an error or interrupt, and their cost, as ``samples`` of the exception.
+
+    ``numbers`` are their indices among all requested samples, ``states`` the states. They are put before samples that
+    the exception has already. For ``cost`` = None, the cost of those is kept.
+    """
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
@@ -72,7 +76,11 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: adjacent doubles near t lie too far apart, or else ``reason``."""
+    """Return why a stepper is stuck at the time t: adjacent doubles near t lie too far apart, or else ``reason``.
+
+    Doubles lie too far apart if fewer than about a million of them fit between ``t0`` and ``stop``, the ends of the
+    motion.
+    """
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
@@ -83,7 +91,8 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
     """Return a sentence that says that a motion would take far too many steps, or an empty text if it would not.
 
-    The last ``steps`` steps covered a time of ``way`` seconds; ``left`` seconds remain.
+    The last ``steps`` steps covered a time of ``way`` seconds; ``left`` seconds remain. ``limit`` is the largest number
+    of steps; far too many are more than three times as many.
     """
     if steps * left <= HOPELESS * limit * way:
         return ""

@@ -114,7 +114,10 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion; ``cost`` holds its accepted steps, rejected steps and evaluations."""
+    """Return the statistics of a motion; ``cost`` holds its accepted steps, rejected steps and evaluations.
+
+    ``seconds`` is the time of the computation, and ``switchings`` lists the functions that switched in the torques.
+    """
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
@@ -163,7 +166,11 @@ class Segment(NamedTuple):
 
 
 def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Return the segments into which switching times divide the span from t0 to ``end``; ``end`` may lie before t0."""
+    """Return the segments into which switching times divide the span from t0 to ``end``; ``end`` may lie before t0.
+
+    Without times in ``breaks`` that lie inside, the result is one segment. For t0 = 0, ``end`` = 2 and a break at 1 it
+    is the segment from 0 to 1 and the segment from 1 to 2.
+    """
     if not breaks:
         return [Segment(t0, end, t0, end)]
     low, high = min(t0, end), max(t0, end)
@@ -193,7 +200,8 @@ def _inside(edge: float, other: float) -> float:
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
     """Yield the indices of the times from t0 on, then the indices of the times before t0.
 
-    Each group is sorted by distance from t0; an empty group is left out.
+    Each group is sorted by distance from t0; an empty group is left out. For the times 3, 0, 2 and t0 = 1 the groups
+    are [2, 0] and [1].
     """
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
@@ -236,7 +244,11 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C."""
+    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C.
+
+    ``task`` is the integration; ``backward`` and ``forward`` are its recorded steps before and after the start, one per
+    row.
+    """
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
         super().__init__(task.t0, task.y0, span, task.stats())
@@ -252,7 +264,10 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """C function and parameters of a run, valid until the epoch, from which the kernel counts time, is moved again."""
+    """C function and parameters of a run, valid until the epoch, from which the kernel counts time, is moved again.
+
+    ``since`` is the number of steps after which they were set.
+    """
 
     step: Callable[..., Any]
     parameters: Any
@@ -330,7 +345,10 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with declared types."""
+        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with declared types.
+
+        ``result`` and ``arguments`` are its types in ctypes. NAME is the name of the stepper, such as ``taylor``.
+        """
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -341,24 +359,31 @@ class Stepper(ABC):
 
     @abstractmethod
     def row_length(self) -> int:
-        """Return the number of doubles that the record of one step takes."""
+        """Return the number of doubles that the record of one step takes, which depends on the number of states."""
 
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
         """Return the error allowed in one step, and the least step length that may use it, as a fraction of the span.
 
-        A shorter step may use only a share of this error.
+        They follow from ``tolerance``, the error of the whole trajectory. A shorter step may use only a share of this
+        error.
         """
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Prepare a run for the next segment: set the fields of its C struct that only this stepper's method uses."""
+        """Prepare a run for the next segment: set the fields of its C struct that only this stepper's method uses.
+
+        ``allowed`` is the error allowed in one step.
+        """
 
     @staticmethod
     @abstractmethod
     def tried(run: Run) -> int:
-        """Return the number of steps of a run that count towards the limit of steps."""
+        """Return the number of steps of a run that count towards the limit of steps.
+
+        Each stepper defines whether rejected steps count.
+        """
 
     @staticmethod
     @abstractmethod
@@ -366,7 +391,10 @@ class Stepper(ABC):
         """Return the numbers of accepted steps, rejected steps and evaluations of a run."""
 
     def dense(self, rows: Floats, times: Floats) -> Floats:
-        """Return the states at times inside recorded steps; the times lie all after t0 or all before it."""
+        """Return the states, shape (n, N), at n times inside recorded steps, all after t0 or all before it.
+
+        ``rows`` are the recorded steps, one per row, in the order of the motion.
+        """
         states = np.empty((len(times), self.states))
         self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
         return states
@@ -514,7 +542,7 @@ class Integration:
 
     @cached_property
     def _ready(self) -> Run:
-        """The C struct of the motion at its start; each new run begins with a copy of it."""
+        """The C struct of the motion at its start; each new run begins with a copy of it, which is fast."""
         run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         return run
@@ -571,7 +599,8 @@ class Integration:
     def runs(self, end: float) -> Generator[Run, None, None]:
         """Yield the run once for each segment between switching times, prepared so that the caller can integrate it.
 
-        At the end, the cost of the run is added to the counts of the integration.
+        A run is the state of the motion in C; the caller calls :meth:`advance` until its time is the end of the
+        segment. At the end, the cost of the run is added to the counts of the integration.
         """
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
@@ -589,11 +618,19 @@ class Integration:
             self.evaluations += evaluations
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""
+        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call.
+
+        A subclass may return others in the course of a run.
+        """
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue."""
+        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue.
+
+        ``times`` and ``states`` are the addresses of ``count`` sample times and of the array for their states, or None.
+        ``rows`` is the address of an array with room for the records of ``room`` steps, or None. The status is DONE at
+        the end of the segment, otherwise the caller has to call again.
+        """
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
@@ -612,7 +649,10 @@ class Integration:
         return status
 
     def judge_pace(self, tried: int, run: Run) -> None:
-        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit.
+
+        ``tried`` is the number of steps of the run so far; the steps since the last check show the pace.
+        """
         reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
         if reason:
             raise IntegrationStopped(run.t, reason, run.stop)

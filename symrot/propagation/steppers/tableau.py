@@ -234,7 +234,10 @@ DENSE: Mapping[int, Mapping[int, str]] = {
 
 
 def _sum(row: Mapping[int, str]) -> str:
-    """Return a weighted sum of stages as C text, such as ``0.5*k(1) - 0.25*k(5)``, in the order of the stages."""
+    """Return a weighted sum of stages as C text, such as ``0.5*k(1) - 0.25*k(5)``, in the order of the stages.
+
+    ``row`` maps the numbers of the stages to their coefficients as decimal text.
+    """
     terms = [f"{'-' if value.startswith('-') else '+'} {value.lstrip('-')}*k({stage})" for stage, value in row.items()]
     return " ".join(terms).removeprefix("+ ")
 

@@ -66,8 +66,9 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 def step_tail(tolerance: float) -> tuple[float, float]:
     """Return a limit for the last terms of a series, and the step length, as a fraction of the span, for this limit.
 
-    In a step that is shorter by a factor r, the limit is multiplied by r^(7/4), because errors of single steps add up
-    about as the number of steps to this power. The final error then hardly depends on the span.
+    ``tolerance`` is the error of the whole trajectory to aim for. In a step that is shorter by a factor r, the limit is
+    multiplied by r^(7/4), because errors of single steps add up about as the number of steps to this power. The final
+    error then hardly depends on the span.
 
     The constant is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
     intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.
@@ -79,9 +80,9 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 def order_for(tolerance: float, program: Program | None = None) -> int:
     """Return the order of the series that is fastest for a tolerance; every order is accurate enough.
 
-    The fastest order depends on the number of products in the right-hand side. It was measured with
-    ``python -m symrot.bench.taylor --orders``: for tolerances below 1e-6 the times of orders 16 to 24 differ by less
-    than a tenth.
+    The fastest order depends on the number of products in the right-hand side, ``program``; without it, few products
+    are assumed. It was measured with ``python -m symrot.bench.taylor --orders``: for tolerances below 1e-6 the times of
+    orders 16 to 24 differ by less than a tenth.
     """
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
@@ -89,7 +90,10 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
 
 
 def refusal(program: Program) -> str:
-    """Return a sentence that says why a right-hand side has no Taylor series; an empty text if it has one."""
+    """Return a sentence that says why a right-hand side has no Taylor series; an empty text if it has one.
+
+    A right-hand side has no series if it contains, for example, the absolute value of a state.
+    """
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -215,7 +219,11 @@ class _Stepper(Stepper):
         return run.accepted, run.jets - run.accepted, run.jets
 
     def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
+        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``.
+
+        Row k is the k-th derivative, times ``unit``^k, divided by k!; ``y`` is the state at t, and ``p`` are the
+        parameters of the right-hand side.
+        """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))
         self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, coefficients.ctypes.data)
