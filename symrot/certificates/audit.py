@@ -162,8 +162,7 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
     """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text, ``source``.
 
     ``data`` is the content of the certificate at ``path``. The list has one sentence for each of the two files that is
-    in
-    the certificate's folder. CertificateError is raised if a file performs other operations.
+    in the certificate's folder. CertificateError is raised if a file performs other operations.
     """
     findings = []
     for ending, compare in _READERS.items():

@@ -93,8 +93,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return a pair for each component of an argument: its index text, such as ``"q[1]"``, and (symbol, unit,
-    description).
+    """Return a pair for each component of an argument: index text, such as ``"q[1]"``, and (symbol, unit, description).
 
     The index text of an argument that is one number is its name.
     """

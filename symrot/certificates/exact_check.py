@@ -82,7 +82,7 @@ def require(holds, message):
 
 
 def nearest(value, real):
-    """Return an exact value rounded to the nearest double or float, ties to even."""
+    """Return the exact ``value`` rounded to the nearest number of the C type ``real``, ties to even."""
     bits, shift = {"double": 53, "float": 24}[real], value.denominator.bit_length() - abs(value.numerator).bit_length()
     scale = Fraction(2) ** (bits + shift - (abs(value) * Fraction(2) ** shift >= 1))
     return round(value * scale) / scale
@@ -349,7 +349,10 @@ class KernelCheck:
 
 
 class FloatFunctions(dict):
-    """A dictionary that computes, for a key (function name, arguments), the value of the function in floats."""
+    """A dictionary from (function name, argument values) to the value of the function in floats.
+
+    A value is computed when it is first needed.
+    """
 
     def __missing__(self, call):
         return Fraction(getattr(math, call[0])(*map(float, call[1:])))

@@ -234,8 +234,7 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
     """Return the compiler's name at the start of a command, or an empty text, and the index of the first flag.
 
     ``words`` is the command; a launcher such as ``ccache`` may come before the compiler. InputError is raised for
-    another
-    compiler than gcc and clang.
+    another compiler than gcc and clang.
     """
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0

@@ -77,8 +77,7 @@ def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law,
     """Return a tuple of one law: each output that is a derivative is the exact derivative of its rate.
 
     ``outputs`` are the names of the output components; a derivative's is like ``domega_1_by_A``. The tuple is empty if
-    no
-    output is a derivative.
+    no output is a derivative.
     """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []

@@ -58,10 +58,10 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield angles up to 1e6 rad that test sine and cosine: multiples of pi/2, and random angles.
+    """Yield pairs (0, x) with angles x up to 1e6 rad that test sine and cosine: near multiples of pi/2, and random.
 
-    Near multiples of pi/2 the reduction of an angle loses digits. Beyond 1e6 rad libraries are less accurate: the
-    cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
+    Each x has ``digits`` binary digits. Near multiples of pi/2 the reduction of an angle loses digits. Beyond 1e6 rad
+    libraries are less accurate: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
     """
     from mpmath import mp, mpf
 
@@ -75,7 +75,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield random arguments (y, x) that test atan2; y has many magnitudes."""
+    """Yield random arguments (y, x) with ``digits`` binary digits that test atan2; y has many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -87,7 +87,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield random positive numbers of many magnitudes that test the square root."""
+    """Yield pairs (0, x) that test the square root: x is random, positive, and has ``digits`` binary digits."""
     from mpmath import mpf
 
     for _ in range(POINTS):
@@ -112,7 +112,11 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: arguments, rounded value, its error in ulp, and the size of an ulp."""
+    """Return a row of a C table of test points: y, x, the exact value rounded, its error in ulp, the size of an ulp.
+
+    ``name`` is the function, such as ``atan2``, and ``suffix`` is ``"f"`` for float or empty for double. An ulp is the
+    distance between neighbouring numbers.
+    """
     from mpmath import floor, log, mp, mpf
 
     digits, smallest = FORMATS[suffix]

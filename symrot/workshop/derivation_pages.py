@@ -157,21 +157,24 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
 def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> list[Path]:
     """Write a few derivations into a directory for students, and return the paths.
 
-    Links to pages that the handout does not have become plain text. Parameters and exceptions are those of
-    :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each page.
+    Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions
+    are those of :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each
+    page.
     """
     if form != "markdown":
         paths = write_pages(directory, form, chosen)
+        present = _present(Path(directory), chosen, ".html")
         for path in paths if form == "html" else ():
             if path.suffix == ".html":
-                path.write_bytes(_only_links_to(chosen, LINK_IN_HTML, path.read_bytes().decode()).encode())
+                path.write_bytes(_only_links_to(present, LINK_IN_HTML, path.read_bytes().decode()).encode())
         return paths
     directory = Path(directory)
+    present = _present(directory, chosen, ".md")
     written = []
     texts: dict[str, str] = {}
     for name in chosen:
         page = _page(name)
-        texts[f"{name}.md"] = _only_links_to(chosen, LINK, page.markdown())
+        texts[f"{name}.md"] = _only_links_to(present, LINK, page.markdown())
         texts |= {figure.file: figure.svg() for figure in _figures(page)}
     for file, text in texts.items():
         path = directory / file
@@ -186,9 +189,14 @@ LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
 """Links between pages."""
 
 
-def _only_links_to(chosen: Sequence[str], link: re.Pattern[str], text: str) -> str:
-    """Return a text in which links to derivations other than the chosen ones are plain text."""
-    missing = set(names()) - set(chosen)
+def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
+    """Return the names of the chosen derivations and of those whose pages are in a directory already."""
+    return {name for name in names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
+
+
+def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
+    """Return a text in which links to derivations other than ``present`` are plain text."""
+    missing = set(names()) - present
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 

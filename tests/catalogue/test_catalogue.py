@@ -267,6 +267,15 @@ def test_a_handout_has_the_chosen_pages_and_no_dead_links(tmp_path, capsys):
                 assert (tmp_path / form / target).exists(), (path.name, target)
 
 
+def test_a_handout_links_to_pages_that_are_there_already(tmp_path):
+    """A page that is printed again among all pages keeps its links."""
+    printed = derivation_pages.illustrated(catalogue.derivation("intermediate_axis")).markdown()
+    for name in re.findall(r"\]\((\w+)\.md\)", printed):
+        (tmp_path / f"{name}.md").touch()
+    derivation_pages.write_handout(tmp_path, "markdown", ["intermediate_axis"])
+    assert (tmp_path / "intermediate_axis.md").read_text(encoding="utf-8") == printed
+
+
 def test_the_latex_book_has_parts_chapters_and_links():
     text = latex_book("Bodies", "About.", {"First": [catalogue.derivation("intermediate_axis")],
                                            "Last": [catalogue.derivation("euler_singularities")]})  # fmt: skip

@@ -181,8 +181,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
     """Return the names of Coq files in groups, in the order in which the groups must be checked.
 
     Each file needs only files of earlier groups, so that the files of a group can be checked in parallel. ``sources``
-    maps
-    each name to its text.
+    maps each name to its text.
     """
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()

@@ -101,7 +101,7 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text folded into lines of at most :data:`WIDTH` characters; all lines but the first are indented."""
+    """Return a text in lines of at most :data:`WIDTH` characters; later lines are indented by ``indent`` blanks."""
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 

@@ -69,7 +69,10 @@ class _AtomField(FractionField):
         self.atoms: dict[tuple[str, tuple[Quotient, ...]], str] = {}
 
     def atom(self, function: str, arguments: tuple[Quotient, ...]) -> Quotient:
-        """Return the atom for the value of a function; equal arguments give the same atom."""
+        """Return the atom, a symbol, for the value of a function such as ``"sin"`` at fractions of polynomials.
+
+        Equal arguments give the same atom, so that equal function values are equal in the proof.
+        """
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
@@ -120,10 +123,10 @@ FUNCTIONS_WITH_LIMIT = (
 
 
 class _EqualityProver:
-    """The evaluation of a C text's operations in exact fractions of polynomials.
+    """The evaluation of a C text's operations in exact fractions of polynomials, for comparison with the formulas.
 
-    ``symbol_of`` maps the index text of an input to its symbol, ``intended`` a symbol to the formula that it stands
-    for.
+    ``symbol_of`` maps the index text of an input, such as ``"q[1]"``, to its symbol; ``intended`` maps the symbol of an
+    input to the formula for which it stands.
     """
 
     def __init__(
@@ -150,9 +153,10 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the indices of the operations by which node ``index`` is computed from node ``leaf`` and constants.
+        """Return the indices of the operations by which node ``index`` of the graph is computed from node ``leaf``.
 
-        Raise CertificateError unless they are sums and products, so that node ``index`` is a polynomial in the leaf.
+        Raise CertificateError unless they are sums and products with constants, so that node ``index`` is a polynomial
+        in the leaf, as in the series of a function near zero.
         """
         if index == leaf:
             return set()
@@ -167,7 +171,10 @@ class _EqualityProver:
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
     def _value(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the exact value of an operation from the values of the operations before it."""
+        """Return the exact value of one operation (``node``) as a fraction of polynomials.
+
+        The values of its operands must have been computed before.
+        """
         fractions, kind = self.fractions, node[0]
         if kind == "in":
             if node[1] not in self.symbol_of:
@@ -187,7 +194,10 @@ class _EqualityProver:
         return fractions.atom(kind, tuple(arguments))
 
     def _constant(self, value: Fraction) -> Quotient:
-        """Return the exact number for which a rounded constant of the C text stands."""
+        """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.333..., as a fraction.
+
+        A constant that is only a rounding of its exact number is recorded in ``rounded``.
+        """
         intended = intended_value(value, self.operations.precision)
         if intended.fraction != value or intended.times_pi:
             self.rounded[value] = intended
@@ -195,7 +205,10 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the value of a C conditional such as ``a < b ? x : y``, which must also occur in the formulas."""
+        """Return the exact value of a C conditional ``a < b ? x : y`` (``node``), which the formulas must have too.
+
+        CertificateError is raised for a conditional that the formulas do not have.
+        """
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -227,7 +240,8 @@ class _EqualityProver:
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
         """Return the atom of a function that the C text computes by a series near zero and by its formula elsewhere.
 
-        The arguments are the indices of the operations x^2, bound of x^2, series and formula.
+        The text is ``square < split ? near : far``; the arguments are the indices of these operations: x^2, the bound
+        of x^2, the series and the formula.
         """
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:
@@ -246,7 +260,10 @@ class _EqualityProver:
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:
-        """Return the coefficients of node ``index`` as a polynomial in node ``leaf``, constant term first."""
+        """Return the coefficients of node ``index`` as a polynomial in node ``leaf``, the constant term first.
+
+        Both are indices in the graph of operations: for ``2 + 3*leaf`` the result is ``[2, 3]``.
+        """
         if index == leaf:
             return [Fraction(0), Fraction(1)]
         node = self.operations.nodes[index]
@@ -264,7 +281,8 @@ class _EqualityProver:
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
         """Check the coefficients of a truncated series in the C text; return the series with a bound of its error.
 
-        ``split`` is the value of x^2 below which the C text uses the series.
+        ``name`` is the function, ``split`` the value of x^2 below which the C text uses the series, and ``written`` the
+        coefficients in the text. CertificateError is raised for a coefficient that is not the exact one, rounded.
         """
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):

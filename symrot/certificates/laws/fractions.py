@@ -19,9 +19,9 @@ Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest 
 
 
 class FractionField:
-    """The field of fractions of a polynomial ring; equal fractions are equal tuples.
+    """Fractions of polynomials with rational coefficients, each a pair (numerator, denominator) in lowest terms.
 
-    ``name`` is the name of the kernel, for error messages.
+    Equal fractions are equal pairs. ``name`` is the name of the kernel, for error messages.
     """
 
     def __init__(self, ring: PolyRing, name: str) -> None:
@@ -38,7 +38,10 @@ class FractionField:
         return self.generators[name], self.ring.one
 
     def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
-        """Return ``above/below`` in lowest terms, scaled so that the denominator's leading coefficient is 1."""
+        """Return ``above/below`` in lowest terms, scaled so that the denominator's leading coefficient is 1.
+
+        CertificateError is raised if ``below`` is zero.
+        """
         if not below:
             raise CertificateError(
                 f"{self.name}: expected a formula that is defined somewhere, got a formula that divides by "
@@ -72,13 +75,13 @@ class FractionField:
         return self.lowest(a[0] * b[1], a[1] * b[0])
 
     def power(self, a: Quotient, exponent: int) -> Quotient:
-        """Return a fraction of polynomials to an integer power, which may be negative."""
+        """Return the fraction ``a`` to an integer power; a negative exponent gives a power of the reciprocal."""
         above, below = a if exponent > 0 else (a[1], a[0])
         return self.lowest(above ** abs(exponent), below ** abs(exponent))
 
 
 def quotient_text(value: Quotient) -> str:
-    """Return a fraction of polynomials as text."""
+    """Return a fraction of polynomials as text: ``(x + 1)/(y)``, or only the numerator if the denominator is 1."""
     above, below = value
     return str(above) if below == 1 else f"({above})/({below})"
 
@@ -94,15 +97,15 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def symbol(self, name: str) -> Quotient:
-        """Return the symbol of this name, or the number pi, as a fraction of polynomials."""
+        """Return the symbol ``name``, or the number pi, as a fraction of polynomials; each subclass defines how."""
 
     @abstractmethod
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction as a fraction of polynomials."""
+        """Return the square root of the fraction ``square`` as a fraction of polynomials; each subclass defines how."""
 
     @abstractmethod
     def function(self, expr: Expr) -> Quotient:
-        """Return the value of a function call, such as ``sin(x)``, as a fraction of polynomials."""
+        """Return the value of a call ``expr``, such as ``sin(x)``, as a fraction; each subclass defines how."""
 
     def read(self, expr: Expr) -> Quotient:
         """Return a SymPy formula as a fraction of polynomials."""

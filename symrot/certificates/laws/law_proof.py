@@ -42,7 +42,10 @@ ProofStep = tuple[Any, ...]  # kind, arguments
 
 @dataclass(frozen=True)
 class EntryProof:
-    """The proof that an expression of a law is zero: expression * ``factor`` is a sum of cofactors times relations."""
+    """The proof that an entry, an expression that a law states to be zero, is zero: a factor and cofactors, as text.
+
+    Entry times ``factor`` is the sum of the ``cofactors``, each times its relation; relations are known to be zero.
+    """
 
     factor: str
     cofactors: Cofactors
@@ -85,7 +88,11 @@ class OutOfGenerators(Exception):
 
 @dataclass
 class LawProver(FormulaReader):
-    """One attempt to prove a law over one polynomial ring, for one selection of the branches of its conditionals."""
+    """One attempt to prove a law, for one selection of the branches of all conditionals in its formulas.
+
+    The polynomial ``ring`` has a variable for each input and a limited number of generators, variables for function
+    values.
+    """
 
     name: str
     law: Law
@@ -115,7 +122,11 @@ class LawProver(FormulaReader):
         self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in generators)
 
     def run(self, decided: Sequence[Choice]) -> CaseProof:
-        """Return the proof of one case; raise CertificateError if the law does not follow from the relations."""
+        """Return the proof of the case ``decided``, which lists the chosen branches: (left, relation, right) as text.
+
+        UndecidedChoice is raised for a conditional that the list does not have; CertificateError if the law does not
+        follow from the relations.
+        """
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
@@ -136,7 +147,7 @@ class LawProver(FormulaReader):
         return CaseProof(tuple(decided), tuple(self.steps), relations, tuple(entries))
 
     def step(self, *step: Any) -> None:
-        """Record a fact, such as ``sin^2 + cos^2 = 1`` for an angle, that the rest of the proof uses."""
+        """Record a fact that the rest of the proof uses, such as ``sin^2 + cos^2 = 1``, as in :class:`CaseProof`."""
         self.steps.setdefault(step)
 
     # --- expressions --------------------------------------------------------------------------------------------------
@@ -167,14 +178,20 @@ class LawProver(FormulaReader):
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
-        """Return whether the current case takes the first branch of a conditional."""
+        """Return whether the current case takes the first branch of the conditional ``choice``.
+
+        UndecidedChoice is raised if the case does not say which.
+        """
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise UndecidedChoice(left, right)
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return an unused generator for the function value ``meaning``; raise OutOfGenerators if all are used."""
+        """Return an unused generator, the variable for a function value; ``meaning`` is the function value as text.
+
+        OutOfGenerators is raised if the ring has no unused generator.
+        """
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -183,7 +200,11 @@ class LawProver(FormulaReader):
         return self.fractions.generators[name]
 
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of a fraction; the relations reduce the fraction first, to find perfect squares."""
+        """Return the square root of the fraction ``square``.
+
+        The fraction is reduced first by the relations, expressions that are known to be zero, so that ``1 - sin(x)^2``
+        is seen to be a perfect square.
+        """
         if square not in self.roots:
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
@@ -214,7 +235,7 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the root of a polynomial if that is a perfect square whose root is never negative; otherwise None."""
+        """Return the root of the polynomial ``inside`` if it is a square and the root is never negative; else None."""
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
@@ -227,7 +248,11 @@ class LawProver(FormulaReader):
         return value
 
     def is_nonnegative(self, value: PolyElement) -> bool:
-        """Return whether every term of a polynomial is a product of even powers and of nonnegative generators."""
+        """Return whether a polynomial is certainly not negative.
+
+        That is so if each of its terms is a product of a positive number, even powers, and generators that are not
+        negative.
+        """
         return all(
             coefficient > 0 and all(not n % 2 or place in self.nonnegative for place, n in enumerate(monomial))
             for monomial, coefficient in value.items()
@@ -273,7 +298,11 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return the cosine and sine of an angle: a sum of integer multiples of base angles and of pi/2."""
+        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators.
+
+        The angle must be a sum of integer multiples of base angles and of pi/2; a base angle has generators for its own
+        cosine and sine.
+        """
         above, below = angle
         if below != 1:
             raise CertificateError(
@@ -321,7 +350,10 @@ class LawProver(FormulaReader):
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return the cosine and sine of ``coefficient*unit``, computed from the base angle's cosine and sine."""
+        """Return the pair (cosine, sine) of the angle ``coefficient*unit`` from the pair of its base angle.
+
+        ``unit`` is a monomial such as x; the base angle is a fraction of it, such as x/2.
+        """
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
         result = pair = self._pair(unit, first)
@@ -334,7 +366,7 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the c for which ``c*unit`` is a base angle, such as 1/2 for x/2.
+        """Return the c for which ``c*unit`` is a base angle, one with generators for cosine and sine: 1/2 for x/2.
 
         Raise BaseAngleTooLarge if ``coefficient*unit`` is no integer multiple of this base angle.
         """
@@ -355,7 +387,10 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the cosine and sine of a base angle, each a generator."""
+        """Return the pair (cosine, sine) of the base angle ``angle``, each a generator;
+
+        ``unit`` is its monomial, such as x.
+        """
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))
@@ -366,12 +401,16 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of a polynomial divided by the relations, and by the hypothesis if there is only one."""
+        """Return the remainder of a polynomial after division by the relations.
+
+        A hypothesis of the law is a divisor too, if the law has only one. A remainder of zero proves that the
+        polynomial is zero.
+        """
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return cofactors such that a polynomial is the sum of cofactors times relations, or None if none were found.
+        """Return cofactors, whose products with relations and hypotheses have a polynomial as sum, or None.
 
         Without hypotheses, division by the relations decides, since their leading generators differ. If division by
         relations and several hypotheses leaves a remainder, linear algebra tries constants, and then linear
@@ -390,7 +429,7 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Write a polynomial as a sum of cofactors times relations and hypotheses; return the cofactors and the rest.
+        """Return (cofactors, rest): a polynomial is the sum of cofactors times relations and hypotheses, plus the rest.
 
         The cofactors of the hypotheses have at most the degree ``degree``. The rest is zero if such cofactors exist,
         otherwise it is the remainder of the division by the relations alone.
@@ -401,9 +440,9 @@ class LawProver(FormulaReader):
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
-    """Return cofactors of degree at most ``degree`` (0 or 1) for which polynomial = sum of cofactors times relations.
+    """Return cofactors, one for each relation, whose products with the relations have the sum ``polynomial``.
 
-    Return None if there are no such cofactors.
+    The cofactors have at most the degree ``degree``, 0 or 1. The result is None if there are no such cofactors.
     """
     ring = polynomial.ring
     occurring = {

@@ -97,14 +97,21 @@ ENTRIES = 9  # number of entries of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
-    """Return expressions that are all zero if the symbols form a unit vector, unit quaternion or rotation matrix."""
+    """Return the expressions that are zero if the symbols form a unit vector, unit quaternion or rotation matrix.
+
+    Nine symbols are a matrix, row by row; fewer are a vector or quaternion; without symbols the tuple is empty.
+    """
     if len(symbols) == ENTRIES:
         return rotation_relations(Matrix(3, 3, symbols))
     return (sum(each**2 for each in symbols) - 1,) if symbols else ()
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in a law's hypotheses; these must form a unit vector or a rotation matrix."""
+    """Return the names of the symbols in the hypotheses of a law, the relations that it presupposes.
+
+    The hypotheses must say that the symbols form a unit vector, a unit quaternion or a rotation matrix; otherwise
+    CertificateError is raised. ``name`` is the kernel, for its message.
+    """
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     if hypotheses(symbols) != law.relations:
         expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
@@ -121,7 +128,11 @@ UNIT: dict[int, tuple[int, ...]] = {
 
 
 def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the exact coordinates of a point at which the law's hypotheses hold, as pairs (input, number as text)."""
+    """Return a point at which the law's hypotheses hold, as pairs (input, exact number as text).
+
+    A checker evaluates the proof there, to see that it hides no division by zero. ``names`` are all inputs, of which
+    ``hypothesis_names`` occur in the hypotheses; ``name`` is the kernel, for messages.
+    """
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(hypothesis_names) == ENTRIES else len(hypothesis_names), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)

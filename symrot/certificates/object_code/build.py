@@ -33,7 +33,7 @@ SECONDS, SECONDS_TO_ANSWER = 120, 20
 
 
 def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Path) -> None:
-    """Compile one C file into an object file; headers are also searched in the folder of the source.
+    """Compile the C file ``source`` into the object file ``target``; headers are searched in the folder of the source.
 
     Raises
     ------
@@ -126,7 +126,11 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Compile a C file with one compiler and one set of flags; return its entry in the section ``objects``."""
+    """Compile a C file with one compiler and one set of flags; return the entry of this object file for a certificate.
+
+    ``text`` is the content of ``source``, ``functions`` are the functions to compare with it, and ``version`` is what
+    the compiler says about itself.
+    """
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

@@ -66,7 +66,7 @@ class ObjectVerdict:
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
-        """Return a function's name, its verdict and the reason as one line."""
+        """Return the verdict as one line: the function, the verdict, the first output that differs, and the reason."""
         where = f", output {self.output}" if self.output else ""
         return f"{self.function}: {self.verdict}{where}{f': {self.reason}' if self.reason else ''}"
 
@@ -107,7 +107,7 @@ def compare_object(
 
 
 def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
-    """Return the names of the functions that compute one sample, without the batch functions (``*_batch``)."""
+    """Return the names of the C functions for one sample; a function for many has a parameter of type ``size_t``."""
     return tuple(
         name
         for name, function in functions.items()
@@ -116,7 +116,10 @@ def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
 
 
 def compare_function(text: Operations, function: CFunction, listing: Listing) -> ObjectVerdict:
-    """Compare the operations of a C function with the machine code of the same function; return the verdict."""
+    """Compare the operations of a C function, ``text``, with the machine code of the same function in ``listing``.
+
+    Return the verdict. ``function`` has the names and types of the arguments.
+    """
     start = listing.function(function.name)
     masked = any(
         instruction.mnemonic == "and" and instruction.text.split(None, 1)[1].startswith("rsp,")
@@ -134,7 +137,11 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Compare a C function with its machine code, assuming one alignment of the stack pointer at the call."""
+    """Compare a C function with its machine code, for one alignment of the stack pointer at the call.
+
+    ``start`` is the section and address of the machine code; ``top`` is the place of the return address on the stack,
+    which states the alignment. The other arguments are those of :func:`compare_function`.
+    """
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
     pointers = [p for p in function.parameters if p.size > 0]
@@ -161,7 +168,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs of the C text's operations as symbolic terms."""
+    """Return the outputs that the C text computes as terms, symbolic values of ``width`` bits in ``terms``."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
@@ -184,7 +191,10 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the symbolic terms that the output arrays contain at the end of a path through the machine code."""
+    """Return the terms (symbolic values) that the output arrays contain at the end of a path through the code.
+
+    The order is that of the outputs in ``text``. NotUnderstood is raised if the path does not write an output.
+    """
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
@@ -196,11 +206,11 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Split each fused multiply-add of machine code into a product and a sum; return (terms, comparisons, text).
+    """Split each fused multiply-add in the outputs ``got`` of machine code into a product and a sum.
 
-    The text is empty if the split is harmless. Otherwise it shows what makes the comparison with the C text invalid: a
-    product that is fused in one place and rounded in another, or a number whose known comparisons contradict each
-    other after the split.
+    Return (outputs, known outcomes of comparisons, text). The text is empty if the split is harmless. Otherwise it
+    shows what makes the comparison with the C text invalid: a product that is fused in one place and rounded in
+    another, or a number whose known comparisons contradict each other after the split.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
@@ -221,7 +231,9 @@ def _cases(
 ) -> Iterable[tuple[str, str]]:
     """Compare the outputs of C text and machine code in every case: for every combination of comparison outcomes.
 
-    Yield for each case the first output that differs and the reason, or two empty texts if all outputs agree.
+    ``expected`` and ``got`` are the outputs of the two as terms, ``known`` the outcomes of comparisons on this path;
+    ``fused`` says that the machine code has fused multiply-adds. Yield for each case the first output that differs and
+    the reason, or two empty texts if all outputs agree.
     """
     waiting = [dict(known)]
     while waiting:
@@ -241,14 +253,18 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Return whether outputs differ at most in signs of zeros, as when gcc turns -(a*b + c) into a fused (-a)*b - c."""
+    """Return whether two lists of outputs differ at most in the signs of zeros.
+
+    That happens if gcc turns -(a*b + c) into a fused (-a)*b - c.
+    """
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return the text of a product that is rounded in one place and fused in another; empty if there is none.
+    """Return the text of a product that the code rounds in one place and fuses in another; empty if there is none.
 
-    The rounding error of the product may cancel in the C text; then it does not cancel in the object code.
+    ``roots`` are the terms in which it is searched. The rounding error of such a product may cancel in the C text; then
+    it does not cancel in the object code.
     """
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}
@@ -264,7 +280,10 @@ def _is_exact(terms: Terms, product: int) -> bool:
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence that shows the first operation in which C text and object code differ."""
+    """Return a sentence that shows the first operation in which the terms of C text and object code differ.
+
+    ``expected`` and ``got`` are the terms of the same output, which are unequal.
+    """
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]
@@ -282,7 +301,7 @@ def _difference(terms: Terms, expected: int, got: int) -> str:
 
 
 def term_text(terms: Terms, index: int, depth: int = 3) -> str:
-    """Return a symbolic term as text; operations nested deeper than ``depth`` are abbreviated."""
+    """Return a symbolic term as text, such as ``a*b + c``; operations nested deeper than ``depth`` are abbreviated."""
     node = terms.nodes[index]
     kind = node[0]
     if kind == "in":

@@ -65,7 +65,7 @@ class Register:
 
 @dataclass(frozen=True)
 class Constant:
-    """An immediate operand of an instruction: a number inside the instruction, or the target address of a jump."""
+    """A number inside an instruction: an operand of the operation, or the target address of a jump."""
 
     value: int
 
@@ -109,7 +109,7 @@ class Instruction:
 
 @dataclass(frozen=True)
 class Listing:
-    """The content of an object file: instructions, symbols and constants."""
+    """The content of an object file, by section and address: instructions, symbols (names of functions), constants."""
 
     where: str
     code: Mapping[tuple[str, int], Instruction]
@@ -176,7 +176,7 @@ def read_listing(path: Path) -> Listing:
 
 
 def _objdump(path: Path, *options: str) -> str:
-    """Run objdump on a file and return its output."""
+    """Run objdump with ``options`` on a file and return what it prints; raise CertificateError if it fails."""
     environment = {"LC_ALL": "C", "PATH": _search_path()}
     command = ["objdump", *options, "--", str(path)]
     done = run_tool(command, SECONDS, environment=environment)
@@ -194,7 +194,10 @@ def _search_path() -> str:
 
 
 def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
-    """Return the symbol table: a map from each name to its section and offset."""
+    """Return the symbol table that objdump printed: a map from each name to its section and offset.
+
+    The section of a symbol that another file defines is empty. ``where`` is the file's name, for messages.
+    """
     symbols: dict[str, tuple[str, int]] = {}
     for line in text.splitlines():
         match = _SYMBOL.fullmatch(line)
@@ -208,7 +211,10 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
-    """Return the bytes of each read-only section that holds only constants (no relocations), by section name."""
+    """Return a map from section name to content, for the read-only sections of an object file with only constants.
+
+    A section with addresses that the linker fills in is left out, because its content is not known.
+    """
     constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
@@ -235,7 +241,10 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
 
 
 def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
-    """Return the instructions in objdump's listing, by section and address."""
+    """Return the instructions in ``text``, which objdump printed, by section and address.
+
+    ``where`` is the file's name, for messages; a line that cannot be parsed raises CertificateError.
+    """
     rows: list[tuple[str, int, bytes, str]] = []
     relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
     section = ""
@@ -267,7 +276,11 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return the instruction in one line of objdump's listing, with its relocation if it has one."""
+    """Return the instruction that one line of objdump's listing states, with its relocation if it has one.
+
+    ``content`` are its bytes, ``text`` its words. ``relocations`` holds the addresses that the linker fills in, by
+    section and address; an instruction may have one.
+    """
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -299,7 +312,10 @@ def _operands(text: str) -> tuple[Operand, ...] | None:
 
 
 def _operand(text: str) -> Operand | None:
-    """Return one operand in Intel syntax as an object, or None if it cannot be parsed."""
+    """Return one operand in Intel syntax as a :class:`Register`, :class:`Constant` or :class:`Memory`.
+
+    The result is None if the text cannot be parsed.
+    """
     if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
         return Constant(int(text, 16))
     if re.fullmatch(r"[a-z]\w*", text):
@@ -314,7 +330,10 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
-    """Return a memory operand from the text between its square brackets, or None if it cannot be parsed."""
+    """Return a memory operand from the text between its brackets, such as ``rax+8*rcx-0x10``; None if unparsable.
+
+    ``size`` is the number of bytes that it names, and ``segment`` the segment register before the brackets, or empty.
+    """
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

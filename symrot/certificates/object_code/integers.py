@@ -47,7 +47,10 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
-    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
+    """Return the address of a memory operand: its base (such as an array or the stack) and an offset in bytes.
+
+    The operand may be relative to the address of the instruction.
+    """
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
@@ -56,7 +59,11 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return (base, offset) of an address that the linker fills in; the base is empty for a symbol of another file."""
+    """Return (base, offset) of an address in an instruction that the linker fills in (a relocation).
+
+    The base is a section, or empty for a symbol of another file. NotUnderstood is raised if the instruction has no
+    relocation of one of ``kinds``.
+    """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
         raise NotUnderstood("expected an address that a relocation of a known kind defines, got another address")
@@ -68,7 +75,10 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
 
 
 def symbol_of(state: MachineState, instruction: Instruction) -> int:
-    """Return the term for the address of another file's symbol, read from the global offset table."""
+    """Return the term for the address of another file's symbol, such as a function of the C library.
+
+    The instruction reads it from the global offset table, which the linker fills.
+    """
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
         raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
@@ -76,7 +86,10 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
 
 
 def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the 32-bit words of a source operand: a general-purpose register, memory or a constant."""
+    """Return the value of a source operand of ``size`` bytes as 32-bit words, the lowest first.
+
+    The operand is a general-purpose register, memory or a constant; NotUnderstood is raised for another one.
+    """
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
             raise NotUnderstood(f"expected {size} bytes, got the register {operand.name} of another size")
@@ -187,7 +200,10 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result of an instruction on two integers or addresses, and the processor's flags after it."""
+    """Return the result of an instruction on two integers or addresses, and the processor's flags after it.
+
+    ``name`` is the instruction, such as ``add``. The flags are unknown unless both operands are known.
+    """
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -217,7 +233,10 @@ _INTEGER: dict[str, Callable[[int, int], int]] = {
 
 
 def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, int, int]:
-    """Return the processor's flags (zero, sign, carry, overflow) after an operation on integers."""
+    """Return the processor's flags (zero, sign, carry, overflow) after an instruction on the integers x and y.
+
+    ``name`` is the instruction, such as ``add``, and ``value`` its result, of ``bits`` bits.
+    """
     top = bits - 1
     carry = overflow = 0
     if name in ("sub", "cmp"):
@@ -228,7 +247,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the function that executes ``inc`` or ``dec`` as the instruction ``name`` (add, sub) with a constant."""
+    """Return the function that executes ``inc`` or ``dec``: ``name`` (add, sub) with the constant ``number``."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)

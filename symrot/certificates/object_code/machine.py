@@ -61,7 +61,10 @@ class ExecutionPath:
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state when a function is called; ``names`` are its array arguments."""
+    """Return the processor's state when a function is called, before its first instruction at ``start``.
+
+    ``names`` are its array arguments, and ``numbers`` its arguments that are floating-point numbers, both in order.
+    """
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
@@ -223,7 +226,11 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Execute a call of a C library function; every register that the call may change becomes unknown."""
+    """Execute a call of the C library function ``name``; every register that the call may change becomes unknown.
+
+    ``on_stack`` is 8 if the return address is on the stack already, because the code jumps to the function, and 0 for a
+    call instruction.
+    """
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:

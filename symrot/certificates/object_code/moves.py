@@ -18,7 +18,10 @@ UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 
 
 def _source(state: MachineState, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
-    """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory."""
+    """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory.
+
+    ``bare`` is the name of the instruction without the prefix ``v``.
+    """
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
@@ -65,9 +68,10 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return the size in bytes of a source operand: the size that the instruction reads from memory, or ``whole``.
+    """Return how many bytes an instruction reads from a source operand.
 
-    ``whole`` is the size of a register operand.
+    For a register that is ``whole``, its size; for memory it depends on the instruction, ``bare`` (without a prefix
+    ``v``).
     """
     if not isinstance(operand, Memory):
         return whole
@@ -95,7 +99,10 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
 
 
 def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movss or movsd: a load clears the upper words, a register move keeps them."""
+    """Return the function that executes movss (``size`` 4) or movsd (8): it copies one number.
+
+    A load from memory clears the upper words of the register, a move between registers keeps them.
+    """
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -115,7 +122,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
 
 
 def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movd or movq: copy bits between registers of any kind and memory."""
+    """Return the function that executes movd (``size`` 4) or movq (8): copy bits between registers and memory."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source = operands_of(instruction, 2)
@@ -132,7 +139,10 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a register."""
+    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a register.
+
+    ``start`` is the first 32-bit word of that half: 0 for the low half, 2 for the high one.
+    """
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands

@@ -31,14 +31,18 @@ _QUIET = (  # predicates of the same relation, which differ in the floating-poin
 
 
 def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
-    """Return a term for each number of ``width`` bits in a list of 32-bit words; a double consists of two words."""
+    """Return the numbers of ``width`` bits in a list of 32-bit words, each as a term; a double has two words."""
     if width == 32:
         return list(words)
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return the function that executes arithmetic on the last ``arguments`` sources, packed or scalar."""
+    """Return the function that executes an arithmetic instruction: ``operation`` on each number of the sources.
+
+    ``suffix`` such as ``pd`` says packed or scalar, and the type (see the head of the module); the operation uses the
+    last ``arguments`` sources.
+    """
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -78,7 +82,10 @@ def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return the function that executes a bitwise instruction; a source that is a 64-bit number is not split."""
+    """Return the function that executes a bitwise instruction such as ``andpd``; ``operation`` acts on two terms.
+
+    A source that is a 64-bit number is not split into words, so that the sign of a number can be recognised.
+    """
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         terms, results = state.context.terms, list[int]()
@@ -96,9 +103,10 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison; the bits of its result are all 1 where it holds, else all 0.
+    """Return the function that executes a comparison; all bits of its result are 1 where it holds, else 0.
 
-    If ``outcomes`` is None, the instruction's constant selects the comparison.
+    ``outcomes`` are the outcomes (less, equal, ..) with which it holds; if None, a constant in the instruction selects
+    the comparison. ``suffix`` says packed or scalar, and the type.
     """
     by_number = list(PREDICATES.values())
 
@@ -114,8 +122,9 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
     """Return the function that executes a fused multiply-add: a*b + c, rounded once.
 
-    ``order``, such as "132", gives the numbers of the operands a, b and c. ``subtracted`` says whether c is subtracted:
-    one Boolean for all numbers of the register, or one for the even positions and one for the odd positions.
+    ``order``, such as "132", gives the numbers of the operands a, b and c; ``negated`` says that the product is
+    negated. ``subtracted`` says whether c is subtracted: one Boolean for all numbers of the register, or one for the
+    even positions and one for the odd positions. ``suffix`` says packed or scalar, and the type.
     """
     places = tuple(int(digit) - 1 for digit in order)
 
@@ -162,7 +171,10 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that executes a shift; the shifted number must be constant, as it is in kernels."""
+    """Return the function that executes a shift; the shifted number must be constant, as it is in kernels.
+
+    ``shift`` takes (number, count, ``width``) and returns the shifted number.
+    """
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()

@@ -31,7 +31,10 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the function that executes a shuffle; ``places`` computes the word numbers from the constant."""
+    """Return the function that executes a shuffle whose word numbers depend on the constant in the instruction.
+
+    ``places`` takes (constant, number of the 128-bit part) and returns the word numbers; see :func:`_pick`.
+    """
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []

@@ -46,7 +46,8 @@ class NotUnderstood(Exception):
 class UndecidedBranch(Exception):
     """Raised for a branch on a comparison of unknown outcome: execution must continue along both branches.
 
-    ``pair`` are the two compared terms; ``branches`` are two sets: the outcomes that lead to each branch.
+    ``pair`` are the two compared terms (symbolic numbers); ``branches`` are two sets of outcomes (less, equal, greater,
+    unordered), one for each branch.
     """
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
@@ -77,7 +78,8 @@ class CallContext:
 class MachineState:
     """The symbolic state of the processor before one instruction: registers, memory, flags.
 
-    ``known`` holds the outcomes of earlier comparisons on the path.
+    ``at`` is the section and address of that instruction. ``known`` maps pairs of compared terms to the outcomes that
+    are possible after earlier branches on the path.
     """
 
     context: CallContext
@@ -89,7 +91,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state in which the comparison of the terms ``pair`` has one of ``outcomes``."""
+        """Return a copy of the state after a branch: comparing the two terms of ``pair`` has one of ``outcomes``."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -101,7 +103,10 @@ class MachineState:
     # --- numbers ------------------------------------------------------------------------------------------------------
 
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
-        """Return whether comparing ``a`` with ``b`` has one of ``outcomes``; raise UndecidedBranch if unknown."""
+        """Return whether comparing the term ``a`` with ``b`` has one of ``outcomes``, such as less or equal.
+
+        UndecidedBranch is raised if that is not known.
+        """
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)
         inner = terms.undecided((a, b))

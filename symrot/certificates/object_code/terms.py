@@ -69,7 +69,7 @@ def _bits_from_number(value: float, width: int) -> int | None:
 
 
 def swapped(outcomes: Iterable[str]) -> Outcomes:
-    """Return the outcomes of comparing b with a that correspond to ``outcomes`` of comparing a with b."""
+    """Return ``outcomes`` of comparing a with b as outcomes of comparing b with a: less becomes greater."""
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
@@ -97,11 +97,11 @@ class Terms:
     # --- leaves ---------------------------------------------------------------------------------------------------
 
     def input(self, width: int, place: str) -> int:
-        """Return the term for the number that the caller passes as an input component, such as ``"q[1]"``."""
+        """Return the term for an input component, such as ``"q[1]"``, a number of ``width`` bits."""
         return self._add("in", width, place)
 
     def bits(self, width: int, value: int) -> int:
-        """Return the constant term with the given bits."""
+        """Return the constant term of ``width`` bits that encode the integer ``value``."""
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
@@ -251,10 +251,10 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return the result of an operation on two constant terms as a constant, or None if the result is not finite.
+        """Return the result of an operation on two constant terms as a constant term.
 
-        Computing a float operation in double and then rounding to float is correct: double has more than twice the
-        digits.
+        The result is None if a term is not constant or a number is not finite. Computing a float operation in double
+        and then rounding to float is correct: double has more than twice the digits.
         """
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
@@ -350,7 +350,7 @@ class Terms:
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return a comparison in normal form, so that ``a < b`` and ``b > a``, for example, become the same."""
+        """Return (outcomes, a, b), a comparison in normal form, so that ``a < b`` and ``b > a`` become the same."""
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:
@@ -403,7 +403,7 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return the terms ``roots`` simplified by comparisons whose outcomes are known.
+        """Return the terms ``roots`` simplified by ``known``, the outcomes of comparisons that are possible.
 
         With ``fused=False``, each fused multiply-add is split into a rounded product and a rounded sum.
         """
@@ -466,7 +466,10 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a comparison mask in the terms ``roots`` that depends on no other mask; None if there is no mask."""
+        """Return a comparison in the terms ``roots`` whose outcome is open and depends on no other;
+
+        None if there is none.
+        """
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

@@ -83,7 +83,10 @@ def _tokens(text: str, where: str) -> list[Token]:
 
 
 class Cursor:
-    """The tokens of a C file or of one function body, with the position of the next token to read."""
+    """The tokens of a C file or of one function body, with the position (``index``) of the next token to read.
+
+    ``where`` is the file's name, for messages.
+    """
 
     def __init__(self, tokens: list[Token] | tuple[Token, ...], where: str) -> None:
         self.tokens, self.where, self.index = tokens, where, 0
@@ -101,7 +104,7 @@ class Cursor:
         return self.tokens[self.index - 1]
 
     def fail(self, expected: str, got: str = "") -> CertificateError:
-        """Return a CertificateError that names the line, the expected text, and the text at that position."""
+        """Return a CertificateError that names the line, the expected text, and ``got``, by default the text there."""
         at = min(self.index, len(self.tokens) - 1)
         if not got:
             got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"

@@ -77,7 +77,7 @@ def _size(fraction: Fraction) -> int:
 
 
 def _simplest(low: Fraction, high: Fraction) -> Fraction:
-    """Return the fraction with the smallest denominator in a closed interval of positive numbers."""
+    """Return the fraction with the smallest denominator between ``low`` and ``high``, both positive and included."""
     whole = low.numerator // low.denominator
     if low == whole:
         return Fraction(whole)

@@ -54,16 +54,20 @@ def read_javascript(text: str, name: str, c_text: str, where: str = "kernel") ->
 
 
 def compare_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> None:
-    """Raise CertificateError unless a kernel in JavaScript does the operations of the C function in double precision.
+    """Raise CertificateError unless a JavaScript kernel performs the operations of the C function for doubles.
 
-    The operations are compared one by one: same constants, same functions, same order of rounding.
+    The operations are compared one by one: same constants, same functions, same order of rounding. The arguments are
+    those of :func:`read_javascript`.
     """
     if read_javascript(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
         raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
-    """Return the C text that means the same as a JavaScript module."""
+    """Return the C text that means the same as the JavaScript module ``text``.
+
+    ``name`` is its kernel; ``model`` is the C function of the same kernel, which gives the sizes of arrays.
+    """
     body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
     parts = _HEAD.split(body)
     if parts[0].strip() or len(parts) < 4:
@@ -80,7 +84,10 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
-    """Return the head of the C function; raise CertificateError unless the JavaScript function has its arguments."""
+    """Return the head of a C function with the arguments ``names`` of the JavaScript function.
+
+    Raise CertificateError unless these are the arguments of ``model``, the C function of the same kernel.
+    """
     expected = [parameter.name for parameter in model.parameters]
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")

@@ -64,16 +64,20 @@ def read_jax(text: str, name: str, c_text: str, where: str = "kernel") -> Operat
 
 
 def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:
-    """Raise CertificateError unless a kernel in JAX does the operations of the C function in double precision.
+    """Raise CertificateError unless a kernel in JAX performs the operations of the C function for doubles.
 
-    The operations are compared one by one: same constants, same functions, same order of rounding.
+    The operations are compared one by one: same constants, same functions, same order of rounding. The arguments are
+    those of :func:`read_jax`.
     """
     if read_jax(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
         raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
-    """Return the C text that means the same as a JAX module."""
+    """Return the C text that means the same as the JAX module ``text``.
+
+    ``name`` is its kernel; ``model`` is the C function of the same kernel, which gives the sizes of arrays.
+    """
     head = _HEAD.match(text)
     if head is None:
         raise CertificateError(f"{where}: expected a docstring and the import of jax.numpy, as symrot emits them")
@@ -107,7 +111,10 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _function(name: str, lines: list[str], inputs: list[str], where: str) -> str:
-    """Return the C text of a function such as sinc: assignments, then a choice between two formulas."""
+    """Return the C text of a function such as sinc from the ``lines`` of its body in JAX.
+
+    The lines are assignments, then a choice between two formulas; ``inputs`` are the names of its arguments.
+    """
     body = [_assignment(line, where) for line in lines[:-1]]
     result = _RETURN.fullmatch(lines[-1] if lines else "")
     choice = _CHOICE.fullmatch(result[1]) if result else None
@@ -122,7 +129,10 @@ def _function(name: str, lines: list[str], inputs: list[str], where: str) -> str
 
 
 def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -> str:
-    """Return the C text of the kernel; its arguments and results must be those of the C function."""
+    """Return the C text of the kernel from the ``lines`` of its body in JAX.
+
+    Its arguments ``inputs`` and its results must be those of ``model``, the C function of the same kernel.
+    """
     outputs = [p for p in model.parameters if p.size and not p.is_const]
     expected = [p.name for p in model.parameters if p not in outputs]
     if inputs != expected:

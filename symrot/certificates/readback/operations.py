@@ -66,12 +66,13 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Return a map from the place of each output to its value, in any arithmetic, such as that of intervals.
+        """Evaluate the operations in any arithmetic, such as that of intervals; return a map from each output to its
+        value.
 
         Parameters
         ----------
         values : mapping of str
-            A map from the place of each input to its value.
+            A map from the place of each input, such as ``"q[1]"``, to its value.
         functions : mapping of str to callable
             The functions that the nodes call (``sin``, ...), and ``sqrt``, ``abs``, ``copysign`` and ``select`` (with
             the arguments relation, i, j, x, y) if the kind of number has no operator for them.
@@ -114,7 +115,10 @@ def _node_value(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
-    """Return the value of a node from ``known``, the values of the nodes before it."""
+    """Return the value of one operation from ``known``, the values of the operations before it.
+
+    The other arguments are those of :meth:`Operations.evaluate`.
+    """
     kind = node[0]
     if kind == "in":
         return values[node[1]]
@@ -169,7 +173,10 @@ class GraphBuilder:
     def finish(
         self, name: str, precision: str, inputs: Sequence[str], outputs: Sequence[tuple[str, int]]
     ) -> Operations:
-        """Return the operations on which the outputs depend, numbered in the order of their first use."""
+        """Return the operations on which the outputs depend, numbered in the order of their first use.
+
+        ``outputs`` are pairs (place such as ``"q[1]"``, index of its node); nodes that no output needs are dropped.
+        """
         order: dict[int, int] = {}
         needed: list[Node] = []
         for _, root in outputs:

@@ -86,7 +86,7 @@ class _BodyReader:
         return None
 
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
-        """Raise CertificateError unless a name belongs to a number or an array that was declared before."""
+        """Raise CertificateError unless ``name`` is a number or an array that the C function declared before."""
         if name not in scope.values and name not in scope.arrays:
             raise cursor.fail("the name of a parameter", repr(name))
 
@@ -270,7 +270,7 @@ def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunc
 
 
 def _real_of(function: CFunction, where: str) -> str:
-    """Return the type of all numbers of a kernel, double or float."""
+    """Return the type of all numbers of a kernel, ``"double"`` or ``"float"``; CertificateError if it has both."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
         raise CertificateError(
@@ -375,7 +375,11 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
 
 
 def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read several loops over the same block of samples; each loop must assign different outputs."""
+    """Read several loops over the same block of samples, and record their outputs in ``scope``.
+
+    A kernel with many outputs is computed in such loops; CertificateError is raised if two of them assign the same
+    output.
+    """
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
@@ -429,7 +433,10 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations of a C function whose body was read; raise CertificateError for an unassigned output."""
+    """Return the operations of a C function whose body was read.
+
+    ``places`` are the output elements (array, index) that it must assign; CertificateError is raised for a missing one.
+    """
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

@@ -55,7 +55,7 @@ STORE = Store()
 
 @dataclass(frozen=True)
 class OutputBound:
-    """Bounds of the error of one output: ``bound`` on the whole box, and ``pointwise`` at the point ``at``.
+    """Bounds of the rounding error of one output: ``bound`` on the whole box, ``pointwise`` at the worst point, ``at``.
 
     ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
     ``evaluations`` is the number of boxes evaluated; ``converged`` says that ``bound`` is at most 2 % above
@@ -78,10 +78,10 @@ class OutputBound:
 
 @dataclass(frozen=True)
 class BoundTask:
-    """The task to bound the rounding error of one output on one box; equal tasks of different kernels run once.
+    """The data of one search: bound the rounding error of one output on one box of inputs.
 
-    ``low`` and ``high`` are the ends of the box, ``budget`` the largest number of evaluations, ``libm_ulp`` the
-    largest error of sin, cos and atan2, in units in the last place.
+    Equal tasks of different kernels run once. ``low`` and ``high`` are the ends of the box, ``budget`` the largest
+    number of evaluations, ``libm_ulp`` the largest error of sin, cos and atan2, in units in the last place.
     """
 
     graph: OutputGraph
@@ -109,7 +109,9 @@ class BoundTask:
 def bound_tasks(
     operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP
 ) -> dict[str, BoundTask]:
-    """Return a map from the place of each output, such as ``"q[1]"``, to the task to bound its rounding error.
+    """Return a map from each output, such as ``"q[1]"``, to the task of bounding its rounding error.
+
+    The arguments are those of :func:`bound_outputs`.
 
     Raises
     ------
@@ -164,7 +166,10 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the error bound for a task: from the store, or by a search if it is not there or ``fresh`` is true."""
+    """Return the error bound for a task: the stored one, or the result of a search, which is then stored.
+
+    If ``fresh`` is true, the search is always done.
+    """
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point
@@ -207,7 +212,10 @@ def bound_outputs(
 
 
 def _output_bound(operations: Operations, place: str, task: BoundTask, result: SearchResult) -> OutputBound:
-    """Return the bound of an output from the result of a search; raise InputError if it is infinite."""
+    """Return the bound of the output ``place`` from the result of a search; raise InputError if the bound is infinite.
+
+    The message names a point near the singularity, at which the error has no bound.
+    """
     at = tuple(zip(task.graph.places, result.worst, strict=True))
     if result.bound == inf:
         inputs = task.graph.inputs_of[result.obstacle]
@@ -283,7 +291,10 @@ def rounding_section(
 
 
 def _section_head(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[str, Any]:
-    """Return the first part of the section ``rounding``: assumptions, box, region and budget."""
+    """Return the first part of the section ``rounding`` of a certificate: meaning, assumptions, box, region and budget.
+
+    The arguments are those of :func:`bound_outputs`.
+    """
     return {
         "meaning": MEANING, "assumptions": _assumptions(libm_ulp), "libm_ulp": float(libm_ulp).hex(), "budget": budget,
         "box": {place: [_outward(low, -inf).hex(), _outward(high, inf).hex()] for place, (low, high) in box.items()},
@@ -422,7 +433,11 @@ def check_bounds(
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
-    """Check the part of a ``rounding`` section about double or float, by evaluating the error at single points."""
+    """Check the part of a ``rounding`` section about doubles or floats, by evaluating the error at single points.
+
+    ``part`` is that part, ``operations`` are the operations of the C function of this type. CertificateError is raised
+    if the part is about other operations, or a bound is below the error at its stored point.
+    """
     name = operations.name
     if part["operations_sha256"] != operations.digest():
         raise CertificateError(
@@ -458,9 +473,10 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return the error bound at one point: 0 if no finite bound was found, -1 if the point is not in the region.
+    """Return the bound of a task's rounding error at the single point ``at``, the values of the inputs.
 
-    The bound on any box that contains the point is at least as large.
+    The bound on any box that contains the point is at least as large. The result is 0 if no finite bound exists there,
+    and -1 if the point is not in the region, the part of the box for which errors are bounded.
     """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(

@@ -53,10 +53,10 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the assumptions of a kernel's error bounds, as its certificate lists them in the section ``rounding``.
+    """Return the assumptions of a library kernel's error bounds, for the section ``rounding`` of its certificate.
 
-    They are the restrictions of the inputs, the assumed error of the functions of libm, and the budget: how many
-    boxes of inputs the search for the largest error of each output may evaluate.
+    They are the restrictions of the inputs, the assumed error of the functions of libm, and the budget: how many boxes
+    of inputs the search for the largest error of each output may evaluate. ``source`` is the kernel's C text.
     """
     region = library_problem(definition(name), operations_of(name, source)[0]).region
     return {
@@ -66,9 +66,9 @@ def library_region(name: str, source: str) -> Section:
 
 
 def bounds_sentence(name: str, section: Section | str) -> str:
-    """Return the largest error bound of each output array of a library kernel, as text without a full stop.
+    """Return the largest error bound of each output array of a kernel, as text without a full stop.
 
-    ``section`` is the result of :func:`library_section`.
+    ``section`` is the result of :func:`library_section`: the bounds, or a text that says why there are none.
     """
     if isinstance(section, str):
         return f"no bound; {section.partition(': ')[2]}"
@@ -82,7 +82,10 @@ def bounds_sentence(name: str, section: Section | str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return a phrase about the largest errors of the output array ``name``, in double and in float."""
+    """Return a phrase about the largest errors of the output array ``name``: ``1.2e-15 [6.1e-7] rad/s in dq``.
+
+    The number in brackets is for floats. ``units`` are the units of its components; a single one is printed.
+    """
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))

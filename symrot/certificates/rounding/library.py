@@ -30,14 +30,20 @@ LARGEST = 2.0**10  # largest size that is tried, relative to the box of the kern
 
 @dataclass(frozen=True)
 class RoundingProblem:
-    """The data for bounding a kernel's rounding errors: box, restrictions of inputs, and the inputs' symbols."""
+    """The data for bounding a kernel's rounding errors: the box of its inputs, their restrictions, and their symbols.
+
+    A box has a range for each input; a restriction is, for example, that a quaternion has unit norm.
+    """
 
     box: Mapping[str, tuple[Fraction, Fraction]]
     region: Region
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the index text of an input, such as ``"q[1]"``, from this text or the input's symbol."""
+        """Return the index text of an input, such as ``"q[1]"``;
+
+        ``name`` is that text or the input's symbol, such as ``"q1"``.
+        """
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -70,7 +76,7 @@ def library_problem(kernel: Definition, operations: Operations) -> RoundingProbl
 
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
-    """Read a kernel's C text; return the operations of its function for doubles and of its function for floats."""
+    """Read the C text of the kernel ``name``; return the operations of its function for doubles, and for floats."""
     function, file = f"symrot_{name}", f"{name}.c"
     return read_kernel(text, function, file), read_kernel(text, f"{function}f", file)
 
@@ -123,7 +129,7 @@ def prepare(
 
 
 def resized(box: Box, size: float, places: Sequence[str]) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return a box in which the ranges of the inputs ``places`` are ``size`` times as wide, about the same middles."""
+    """Return a box in which the ranges of the inputs ``places`` are ``size`` times as wide, with the same middles."""
     wider = dict(box)
     for place in places:
         low, high = box[place]
@@ -136,10 +142,11 @@ def largest_box(
     operations: Operations, box: Box, target: float, places: Sequence[str] | None = None, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
-    """Return the largest size, and the box of that size, on which every error is proven to be at most ``target``.
+    """Return (size, box): the largest multiple of ``box`` on which every rounding error is at most ``target``.
 
     The size multiplies the widths of the ranges in ``box``, of all inputs or of the inputs ``places`` only, about their
-    middles. It is found by doubling and 12 steps of bisection.
+    middles. It is found by doubling and 12 steps of bisection. The other arguments are those of
+    :func:`symrot.certificates.rounding.bounds.bound_outputs`.
 
     Raises
     ------

@@ -89,6 +89,6 @@ def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple
 
 
 def _range(low: float, high: float) -> str:
-    """Return a range of numbers as the text ``low .. high``."""
+    """Return a range as text for a comment: ``in [-1, 2]``, or ``= 3`` if both ends are equal."""
     low_text, high_text = (repr(value).removesuffix(".0") for value in (low, high))
     return f"= {low_text}" if low == high else f"in [{low_text}, {high_text}]"

@@ -26,7 +26,10 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the source files that compute bounds; bounds cached under another hash are not used."""
+    """Return the SHA-256 of the source files that compute bounds, called the method.
+
+    It is a part of the key of each stored bound, so that a bound by other sources is not used.
+    """
     here = Path(__file__).parent
     return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
 

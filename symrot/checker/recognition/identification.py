@@ -317,7 +317,8 @@ def _matched(
         pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
         if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
-        if quantity is not None and not (_keeps_rates(pairs) and (view.shape != (3, 1) or _keeps_units(pairs))):
+        has_units = view.shape == (3, 1) and "product v x n" not in known.name  # v and n are any vectors there
+        if quantity is not None and not (_keeps_rates(pairs) and (not has_units or _keeps_units(pairs))):
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]

@@ -306,8 +306,7 @@ class _Interpreter(Cursor):
         raise Unread(text)
 
     def name_parts(self) -> Iterator[str]:
-        r"""Yield the parts of the name at this place as text: a letter, command or accented letter, then indices and
-        primes.
+        r"""Yield the parts of a name as text: a letter, command or accented letter, then its indices and primes.
 
         ``\omega_b'`` gives ``\omega``, ``_b`` and ``'``.
         """

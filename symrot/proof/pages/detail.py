@@ -67,8 +67,7 @@ def _in_detail(step: Step) -> list[Passage]:
 
 
 def _on_board(step: Step) -> list[Passage]:
-    """Return ``step.board``, the proof as a teacher writes it, as paragraphs: a reason, and the next expression of a
-    chain.
+    """Return ``step.board``, the proof as a teacher writes it, as paragraphs: a reason, and the next expression.
 
     The first equation begins with the left side of the step, the others with ``=``.
     """
