@@ -40,7 +40,10 @@ class Sampled(NamedTuple):
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's two methods of sampling a motion, by name; an empty dict if heyoka is not installed."""
+    """Return heyoka's two methods of sampling a motion at ``times``, as functions that return the samples, by name.
+
+    The dict is empty if heyoka is not installed.
+    """
     try:
         import heyoka
     except ImportError:

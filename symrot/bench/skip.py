@@ -106,7 +106,10 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and the functions that must be timed to complete it, by name."""
+    """Return a row of the table without its times, and the functions that must be timed to complete it, by column.
+
+    ``about`` is the description of the motion.
+    """
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -147,7 +150,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of savings as lines of text; the first is the title."""
+    """Return the table of the ``results`` of :func:`measure` as lines of text; the first is the title."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

@@ -106,7 +106,7 @@ VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momen
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
-    """Return the median processor time of a function, in microseconds."""
+    """Return the median processor time of ``run`` over ``rounds`` calls, in microseconds."""
     times = []
     for _ in range(rounds):
         began = process_time_ns()
@@ -227,9 +227,10 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a body driven about its symmetry axis.
+    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis.
 
-    Time for the table of Taylor polynomials is included only if samples near resonance need this table.
+    ``source`` is the closed form of this motion. Time for its table of Taylor polynomials is included only if samples
+    near resonance need this table.
     """
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)

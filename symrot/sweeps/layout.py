@@ -106,7 +106,7 @@ class Store(Protocol):
         """Return the array of statistics called ``name``, such as ``energy_mean``, or None if there is none."""
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.

@@ -65,7 +65,7 @@ class MemoryStore:
         return name in self._arrays
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.

@@ -270,7 +270,7 @@ def _require_same(present: str, statistics: str, path: Path | None) -> None:
 
 
 def _require_memory(header: Header) -> None:
-    """Raise InputError if the results of a sweep are too large for memory."""
+    """Raise InputError if the results that ``header`` describes are too large for memory; a file is then needed."""
     sizes = [len(header.times) if TIME in variable.dimensions else 4 for variable in header.variables]
     size = 8 * header.count * sum(sizes)
     if size > LARGEST_IN_MEMORY:

@@ -146,7 +146,7 @@ class ZarrStore:
         return str(self._group.attrs.get(REMOVED, ""))
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.
@@ -172,7 +172,7 @@ class ZarrStore:
 
 
 def _fast(zarr: Any) -> Any:
-    """Return the fastest compressor: stronger ones gain little, since the digits of results are nearly random."""
+    """Return the fastest compressor of the package ``zarr``; others save little, as digits of results look random."""
     return zarr.codecs.ZstdCodec(level=1)
 
 

@@ -53,7 +53,7 @@ def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
 
 
 def exact_start(plan: Plan) -> list[Fraction]:
-    """Return the exact initial values of the integrated states, from the scene."""
+    """Return the exact initial values of the integrated states: omega, and the quaternion or angle if needed."""
     start = plan.scene.initial
     values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
     values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}

@@ -38,7 +38,8 @@ def heyoka_integrator(
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
     """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
 
-    ``began`` is the start time, s. If heyoka is not installed, return None.
+    ``rates`` is the program for dy/dt with the values ``parameters``, ``start`` the initial state and ``began`` its
+    time, s; ``settings`` are options of heyoka such as ``fast_math``. If heyoka is not installed, return None.
     """
     try:
         import heyoka

@@ -83,10 +83,11 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors: the relative error of the angular velocity, or the attitude error in rad.
+        """Return the larger of two errors of a state: the relative error of omega, or the attitude error in rad.
 
-        For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
-        before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.
+        ``state`` is computed by a method, ``exact`` is the reference. For a body slower than ``least``, rad/s, the
+        first error is relative to ``least``: a body that is nearly at rest before a pulse may rotate at 1e-40 rad/s,
+        where relative errors are meaningless.
         """
         if not np.isfinite(state.omega).all():
             return math.inf

@@ -107,7 +107,9 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Compute reference states of a scene's motion and compare them with other references.
+    """Compute reference states of a scene's motion, against which methods are measured, and compare several references.
+
+    ``say`` is called with progress messages. A reference that would take more than ``seconds`` is left out.
 
     Raises
     ------
@@ -191,7 +193,7 @@ def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the scale by which the error of each state is divided: the initial |omega|, or 1 for the attitude."""
+    """Return for each integrated state the scale of its error: the initial |omega|, or 1 for the attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 

@@ -210,7 +210,7 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite as lines of text; the first is the title."""
+    """Return the table of the suite's ``results``, from :func:`run`, as lines of text; the first is the title."""
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return [
@@ -223,7 +223,7 @@ def lines(results: Mapping[str, Any]) -> list[str]:
 
 
 def page(results: Mapping[str, Any]) -> str:
-    """Return the table of the suite as a Markdown page."""
+    """Return the table of the suite's ``results``, from :func:`run`, as a Markdown page that names the machine."""
     head, *rows = _rows(results)
     one = next(iter(results["studies"].values()))
     machine = one["machine"]

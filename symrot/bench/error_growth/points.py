@@ -63,7 +63,7 @@ def _corners(size: tuple[float, float, float]) -> Floats:
 
 
 def _turned(axis: Floats, angle: float, points: Floats) -> Floats:
-    """Return points rotated about a unit axis."""
+    """Return points rotated about a unit axis by ``angle``, rad."""
     rotated: Floats = (
         points * math.cos(angle) + np.cross(axis, points) * math.sin(angle)
         + np.outer(points @ axis, axis) * (1.0 - math.cos(angle))

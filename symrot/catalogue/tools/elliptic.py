@@ -36,7 +36,10 @@ def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
 
 
 def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
-    """Return sn, cn and dn of u + w or u - w by the addition theorems, from their values at u and at w."""
+    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems.
+
+    ``at`` are the values at w; those at u are the symbols SN, CN and DN.
+    """
     s, c, d = at
     s = sign * s
     below = 1 - parameter * SN**2 * s**2

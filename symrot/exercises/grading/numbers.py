@@ -76,7 +76,7 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
 
 
 def _readings(answer: str) -> Iterator[_Number]:
-    """Yield the possible readings of a typed number: a comma may be a decimal point, or may separate thousands."""
+    """Yield the possible readings of a typed number: ``1,234`` may be 1.234 or 1234."""
     text = answer.strip()
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
