@@ -143,7 +143,7 @@ def _choice(value: object, known: Sequence[str], where: str) -> None:
 
 
 def _require_apart(axes: Sequence[Axis]) -> None:
-    """Raise InputError if two of the varied values may set the same number of the scene, such as one rate."""
+    """Raise InputError if two varied values may set the same number, as ``omega_1`` and ``initial.omega[0]`` do."""
     initial = [axis.target.path for axis in axes if axis.target.path[:1] == ("initial",)]
     rates = [axis.target.name for axis in axes if axis.target.unit == "rad/s" and axis.target.name.startswith("omega_")]
     if initial and rates:

@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The result of moving a body's points with one step size: growth, growth expected by the law, strain, error."""
+    """How a body changes if its points are moved in steps: growth, growth by the proven law, strain, error."""
 
     scheme: str
     h: float  # s
