@@ -41,7 +41,7 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """The settings that determine how long a work-precision study takes."""
+    """The settings that determine how long a work-precision study takes, such as its tolerances and repetitions."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped

@@ -34,7 +34,7 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws of one tangent or secant step, each as a pair (law, whether it was proven)."""
+    """Return the laws by which one tangent or secant step changes lengths, as pairs (law, whether it was proven)."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
