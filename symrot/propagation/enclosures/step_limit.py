@@ -52,7 +52,10 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives."""
+    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives.
+
+    Infinity is always correct as an upper bound.
+    """
     return math.inf if math.isnan(bound) else bound
 
 
@@ -252,8 +255,9 @@ class Deviations:
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
 
-        A bound is infinite if a pole may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction
-        of a deviation that a step misses; it is used for square roots near zero, of which a step may miss the whole.
+        Times and states may be complex; ``y`` and ``radii`` hold one number per state. A bound is infinite if a pole
+        may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction of a deviation that a step
+        misses; it is used for square roots near zero, of which a step may miss the whole.
         """
         self.spent += 1
         try:

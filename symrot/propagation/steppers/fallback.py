@@ -232,7 +232,10 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``."""
+    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``.
+
+    ``solution`` is the interpolant; ``epoch`` is the time, s, on the motion's clock that it calls 0.
+    """
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch

@@ -215,7 +215,8 @@ class Regime:
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
         """Return the parameters of rates, guards and output quantities, with the scene's constants inserted.
 
-        They are then formulas in the epoch and in the modes (values of the switching functions) alone.
+        Each is a tuple of pairs (name, formula). The formulas then contain only the epoch and the modes (values of the
+        switching functions).
         """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}

@@ -158,8 +158,9 @@ class SwitchedRun(RunState):
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Compute the motion up to its next switch, and return the guard of the function that switches there, or None.
 
-        None means that the motion has reached its end, or that the value of a function such as sign was corrected and
-        the motion has to be computed again from the present time.
+        ``regime`` holds the equations until then, and ``consume`` is called with each part of the motion. None means
+        that the motion has reached its end, or that the value of a function such as sign was corrected and the motion
+        has to be computed again from the present time.
         """
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
@@ -278,7 +279,10 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there."""
+        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there.
+
+        The lists of functions that switched at an earlier time are cleared.
+        """
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
@@ -342,7 +346,7 @@ class SwitchedRun(RunState):
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
         """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion.
 
-        It does if the formula of its guard falls from >= 0 to <= 0.
+        It does if the formula of its guard falls from >= 0 to <= 0; it does not if the formula has no value at a point.
         """
         try:
             before, after = (
@@ -427,7 +431,9 @@ class SwitchedRun(RunState):
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
         """Set each function such as sign(x) to its value at zero if x stays at zero; return whether a value changed.
 
-        A sign that was set to 0 in this way gets the sign of x as soon as x is not zero.
+        Whether x stays at zero is seen at the start and the end of ``piece``, the next part of the motion, whose states
+        the function ``states`` computes. A sign that was set to 0 in this way gets the sign of x as soon as x is not
+        zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -474,7 +480,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values of all names in the arguments of switching functions, at ``place`` = (time, states)."""
+        """Return the values, by name, of all names in switching functions' arguments, at ``place`` = (time, states)."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -563,7 +569,10 @@ class SwitchedRun(RunState):
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas."""
+        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas.
+
+        For abs(x + sign(y)) they are x and the name of the mode that replaces sign(y).
+        """
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
