@@ -137,14 +137,17 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as double-double numbers: each double followed by the low part zero."""
+    """Return doubles as double-double numbers: a row a, b, .. becomes a, 0, b, 0, .."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row."""
+    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row.
+
+    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
+    """
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -155,7 +158,10 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers: shape (2 k,) if motions share them, else (n, 2 k)."""
+    """Return k constants as double-double numbers: shape (2 k,) if all motions share them, else (n, 2 k).
+
+    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
+    """
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 

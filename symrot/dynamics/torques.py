@@ -63,7 +63,7 @@ class Motion:
     inertia: Matrix  # kg m^2, shape (3, 3)
 
     def to_body(self, vector_s: Matrix) -> Matrix:
-        """Return the body components of a vector given in space components."""
+        """Return the body components of ``vector_s``, given in space components, as formulas in the quaternion."""
         return quaternion_to_dcm(self.quaternion).T * vector_s
 
 

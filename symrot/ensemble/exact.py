@@ -151,7 +151,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return a rough angle of rotation for each trajectory, rad, shape (n,).
+    """Return a rough angle of rotation for each trajectory between ``start`` and its sample times, rad, shape (n,).
 
     It is estimated from the initial angular velocity and the constant torques.
     """
@@ -209,7 +209,11 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Set the samples at the initial time to the exact initial states, as for single motions."""
+    """Set the samples of the trajectories ``rows`` at the initial time to their exact initial states.
+
+    ``at_start`` is true for each sample time that equals the initial time. The formulas would give these samples with
+    rounding errors; single motions are treated in the same way.
+    """
     if not at_start.any():
         return
     states = variation.initial_states
@@ -274,7 +278,10 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return a constant: one Fraction if it does not vary, otherwise an array with one value per trajectory."""
+        """Return the constant ``name`` of the plan: one Fraction, or an array if it varies.
+
+        The array has one value for each trajectory of the part.
+        """
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 

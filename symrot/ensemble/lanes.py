@@ -152,7 +152,10 @@ class Lanes:
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
+        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of ``unit``.
+
+        ``y`` are the N states at this time, ``p`` the parameters. Tests compare them with other derivatives.
+        """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))
         jet = self._library.symrot_lanes_jet

@@ -127,9 +127,9 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions with the same equations.
+    """Return the samples of motions with the same equations: in closed form, in SIMD lanes, or one by one.
 
-    ``rows`` are the indices of these motions in the ensemble.
+    ``rows`` are the indices of these motions in the ensemble, for messages; ``method`` is as for :func:`follow`.
     """
     count = len(problem.variation)
     solved = _solved(problem, method)

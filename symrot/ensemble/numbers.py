@@ -72,9 +72,9 @@ class Numbers:
         return values
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of a formula, one for each trajectory.
+        """Return the values of the formula ``node``, one for each trajectory.
 
-        For trajectories with equal constants, the formula is evaluated only once.
+        ``used`` are the names in the formula. For trajectories with equal constants it is evaluated only once.
         """
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)

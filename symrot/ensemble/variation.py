@@ -260,7 +260,7 @@ class Variation:
         return tensor
 
     def _agree(self, one: str, other: str) -> bool:
-        """Return whether two moments equal each other in every trajectory."""
+        """Return whether two moments, such as ``"I_xx"`` and ``"I_yy"``, are equal in every trajectory."""
         own = [self.scene.body.inertia[PLACES[name][0]][PLACES[name][1]] for name in (one, other)]
         if one not in self.columns and other not in self.columns:
             return number.equal(*own)
@@ -358,7 +358,10 @@ def read_variation(
 
 
 def _quaternions(attitude: Any) -> ArrayLike:
-    """Return quaternions, scalar first, of n rotations of SciPy, n quaternions or n matrices ``dcm_sb``."""
+    """Return the argument ``attitude`` as quaternions, scalar first, shape (n, 4).
+
+    It holds n rotations of SciPy, n quaternions or n matrices ``dcm_sb``.
+    """
     if hasattr(attitude, "as_quat"):
         return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
     array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")
@@ -391,7 +394,10 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m)."""
+    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m).
+
+    ``t`` is the argument of the user; if it is None, the sample times of the scene are used.
+    """
     if t is None:
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)

@@ -161,9 +161,9 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of a formula's degree in x, y, z without expanding it.
+    """Return an upper bound of a formula's degree in x, y, z, without expanding it; a high degree is refused early.
 
-    Raise ValueError if it calls a function.
+    A formula that calls a function is no polynomial and raises ValueError.
     """
     kind = node[0]
     if kind == "number":

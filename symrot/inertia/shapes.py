@@ -215,7 +215,7 @@ def _prefix(where: str) -> str:
 
 
 def find_shape(name: object, where: str = "") -> Shape:
-    """Return the shape with this name; raise InputError, which lists all names, if there is no such shape."""
+    """Return the shape called ``name``, such as ``"cone"``; another value raises InputError, which lists all names."""
     if not isinstance(name, str) or name not in SHAPES:
         raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
@@ -252,7 +252,7 @@ def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
 
 
 def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> None:
-    """Raise InputError unless the given dimensions are exactly the dimensions of the shape."""
+    """Raise InputError unless the keys of ``dimensions`` are exactly the names of the dimensions of the shape."""
     expected = [dimension.name for dimension in shape.dimensions]
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:

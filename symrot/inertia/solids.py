@@ -229,7 +229,7 @@ def _properties(
 
 
 def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return the quotient of two polynomials as an expression in lowest terms."""
+    """Return ``numerator/denominator`` as an expression in lowest terms, with ``values`` in place of the names."""
     quotient = exact_quotient(numerator, denominator)
     if quotient is not None:
         return _expression(quotient, values)
@@ -260,7 +260,10 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Parse a formula and return it as an expression; raise InputError if it uses a name that is not in ``known``."""
+    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names.
+
+    A name that is not in ``known`` raises InputError.
+    """
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -284,7 +287,10 @@ def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
 
 
 def _dimensions(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Expr]:
-    """Return an expression for each dimension of a shape: the given value, or the default symbol."""
+    """Return an expression for each number among a shape's dimensions: the user's value, or the default symbol.
+
+    A violated condition, such as ``inner < outer``, raises InputError.
+    """
     check_names(shape, {d.name: None for d in shape.dimensions} | dict(dimensions))
     numbers: dict[str, Expr] = dict(_default_dimensions(shape.name))
     for d in shape.dimensions:
@@ -316,7 +322,10 @@ def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
 
 
 def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
-    """Return a density as a polynomial in x, y, z with symbolic coefficients."""
+    """Return a user's density as a polynomial in x, y, z, whose coefficients may contain the values ``dimensions``.
+
+    A density that is no polynomial raises InputError.
+    """
     axes = {str(axis): axis for axis in symbols.position}
     if isinstance(density, str):
         formula = _formula(density, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
@@ -401,7 +410,11 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return the solid of a shape whose density is a polynomial; the integration treats its coefficients as symbols."""
+    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z.
+
+    ``values`` are its dimensions and ``measure`` its volume, area or length. The integration treats the coefficients of
+    the density as symbols.
+    """
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}

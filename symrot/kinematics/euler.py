@@ -305,7 +305,10 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
-    """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three rotations."""
+    """Return the unit quaternion, shape (4, 1), of Euler angles: the product of the three rotations of ``sequence``.
+
+    ``angles`` are in rad, in order of application; default: the symbols phi, theta, psi.
+    """
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
     return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 

@@ -57,7 +57,7 @@ class Projection:
         return base ** (exponent / 2)
 
     def quaternion(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-        """Return the unit quaternion of the parameters, shape (4, 1)."""
+        """Return the unit quaternion, shape (4, 1), of the parameters ``values`` (default: their symbols)."""
         return ImmutableMatrix(self.homogeneous(values) / self.norm(values))
 
     def dcm(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:

@@ -145,7 +145,10 @@ class MotionSamples(Samples):
 
     @abstractmethod
     def _evaluate(self, *names: str) -> Floats:
-        """Return the named output quantities of the kernel at the samples, shape (..., len(names))."""
+        """Return the output quantities ``names``, such as ``"energy"``, at the samples, shape (..., len(names)).
+
+        The kernel of the scene computes them from times, angular velocities and attitudes.
+        """
 
     @cached_property
     def angular_momentum_body(self) -> Floats:

@@ -190,7 +190,10 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
 
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
-    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``."""
+    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``.
+
+    Each other line holds one sample. ``place`` names the file in errors.
+    """
     expectation = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
         content = read_input(path, LARGEST_FILE)

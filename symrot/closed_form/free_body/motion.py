@@ -99,7 +99,7 @@ class FreeRigidBody:
 
     @cached_property
     def fixed(self) -> Any:
-        """Principal moments and axes as integers, as :func:`symrot.closed_form.free_body.bodies.fixed_body` returns."""
+        """Principal moments and axes as integers for C; see :func:`symrot.closed_form.free_body.bodies.fixed_body`."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
@@ -121,7 +121,10 @@ class FreeRigidBody:
         return [0 if abs(x) << NEGLIGIBLE_BITS < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial angular velocity and attitude, both along the given axes of the body."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space.
+
+        Both refer to the axes in which the body was given, which need not be principal axes.
+        """
         omega_before, omega, exact = self._rates
         if omega0 is not omega_before:
             rates, shared = self.along(numbers("omega", omega0, 3))

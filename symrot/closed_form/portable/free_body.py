@@ -171,7 +171,10 @@ class PortableFreeBody:
         return kappa - slope * mp.pi / k * rate, start, u / k / 2 * slope
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = times * float(self.scale)
         if self.regime == "steady":
             if omega is not None:

@@ -40,7 +40,10 @@ def limits() -> tuple[float, float, float]:
 
 
 def available() -> bool:
-    """Return whether the compiled loops can be used: they are already loaded, or there is a C compiler."""
+    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler.
+
+    Otherwise NumPy and Python's integers compute them.
+    """
     return bool(_bound) or not library.missing()
 
 
