@@ -61,7 +61,10 @@ class MethodRecord(TypedDict):
 
 
 class RuleRecord(TypedDict):
-    """The decision of one rule of a plan, such as using a symmetry; see :class:`symrot.planning.rules.RuleOutcome`."""
+    """The decision of one rule of a plan, a simplification of the equations of motion such as using a symmetry.
+
+    See :class:`symrot.planning.rules.RuleOutcome`.
+    """
 
     item: str
     skipped: bool
@@ -80,7 +83,10 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """One switching of a function in a torque; see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """One time ``t`` at which a function with a jump or kink in a torque, such as sign(x), switches.
+
+    See :class:`symrot.propagation.steppers.stepping.Switching`.
+    """
 
     t: float
     function: str
@@ -99,7 +105,7 @@ class InvariantRecord(TypedDict):
 
 
 class LostRecord(TypedDict):
-    """A candidate for a conserved quantity, such as a momentum component, that this motion does not conserve."""
+    """A quantity, such as a momentum component, that many motions conserve but this one does not, with the reason."""
 
     name: str
     unit: str
@@ -136,7 +142,7 @@ class WrittenRecord(TypedDict):
 
 
 class RunReport(TypedDict):
-    """The complete report of `symrot run`."""
+    """The complete report of `symrot run`, as ``symrot run --json`` prints it."""
 
     symrot: str
     scene: SceneRecord
@@ -175,7 +181,10 @@ class PlanRow(TypedDict):
 
 
 class OperationsRecord(TypedDict):
-    """Numbers of operations in one evaluation of the rates: by the general and by the plan's simplified equations."""
+    """Numbers of operations in one evaluation of the rates ``dy/dt``.
+
+    ``general`` is that of the equations for any body, ``specialised`` that of the equations after the plan's rules.
+    """
 
     general: int
     specialised: int
@@ -190,7 +199,7 @@ class NamedScene(TypedDict):
 
 
 class PlanReport(TypedDict):
-    """The complete report of `symrot explain`."""
+    """The complete report of `symrot explain`, as ``symrot explain --json`` prints it."""
 
     scene: NamedScene
     rows: list[PlanRow]

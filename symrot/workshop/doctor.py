@@ -32,7 +32,7 @@ def _version(package: str) -> str | None:
 
 
 def _first_line(command: tuple[str, ...]) -> str:
-    """Return the first line of the version text that a compiler command prints."""
+    """Return the first line that ``command --version`` prints, for a compiler; or "unknown version" and the reason."""
     import subprocess
 
     try:
@@ -45,7 +45,7 @@ def _first_line(command: tuple[str, ...]) -> str:
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Use an empty cache inside a ``with`` block, so that the compiler really runs."""
+    """Run a ``with`` block with an empty cache of compiled libraries, so that the compiler really runs."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")

@@ -66,8 +66,7 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Evaluate the operations in any arithmetic, such as that of intervals; return a map from each output to its
-        value.
+        """Evaluate the operations in any arithmetic, such as intervals; return a map from each output to its value.
 
         Parameters
         ----------
