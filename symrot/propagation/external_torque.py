@@ -187,7 +187,11 @@ class _CFunction(TorqueSource):
 
 @final
 class _Table(TorqueSource):
-    """A torque that is a table of samples, interpolated by cubic splines between switching times."""
+    """A torque that is a table of samples, interpolated by cubic splines between switching times.
+
+    ``switching`` holds these times, s, at which the torque may jump. InputError is raised if the times of the table do
+    not increase, if the shapes of times and samples do not fit, or if a spline far exceeds the samples.
+    """
 
     samples = True
     most_steps = MOST_STEPS
@@ -219,7 +223,7 @@ class _Table(TorqueSource):
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
-        """Raise InputError for times beyond the table."""
+        """Raise InputError if a time from ``low`` to ``high``, s, lies beyond the table."""
         if low < self.span[0] or high > self.span[1]:
             beyond = low if low < self.span[0] else high
             raise InputError(

@@ -122,7 +122,7 @@ class Setup:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The kernel of the plan, which computes rates and quantities; loaded on first use."""
+        """The kernel of the plan, the code that computes rates and output quantities; loaded on first use."""
         return self.load_kernel()
 
     @cached_property
@@ -155,7 +155,8 @@ class Setup:
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
         """Function from the parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed.
 
-        The bounds ensure that no step passes over a short pulse of a torque.
+        The bounds ensure that no step passes over a short pulse of a torque. They are needed only for torques with
+        formulas.
         """
         return formula_deviations(self.plan, self.kernel)
 
@@ -169,7 +170,10 @@ class Setup:
 
     @cached_property
     def on_own_clock(self) -> "Setup":
-        """A copy of the setup whose clock shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
+        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
+
+        Times near a late start then keep more digits, see :mod:`symrot.propagation.time_shift`.
+        """
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
@@ -199,7 +203,10 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy of the setup whose clock shows 0 at the start, so that times near the start keep all digits."""
+        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
+
+        Times near a late start then keep all digits. If the rates depend on time, the copy has a library of its own.
+        """
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
@@ -245,7 +252,7 @@ class Motion(ABC):
 
     @property
     def choice(self) -> Choice:
-        """The method that follows the motion, and the reason for it."""
+        """The method that follows the motion, such as ``"taylor"``, and the reason for it, as a :class:`Choice`."""
         return self.setup.choice
 
     @property
@@ -255,12 +262,18 @@ class Motion(ABC):
 
     @property
     def start(self) -> float:
-        """Initial time, s, on the clock of the motion."""
+        """Initial time, s, on the clock of the motion; 0 if the clock starts with the motion.
+
+        The clock is the time that the stepper counts.
+        """
         return self.setup.start
 
     @property
     def epoch(self) -> float:
-        """Time of the scene, s, at which the clock of the motion shows 0."""
+        """Time of the scene, s, at which the clock of the motion shows 0.
+
+        The clock is the time that the stepper counts. The epoch is 0 if this is the time of the scene.
+        """
         return self.setup.epoch
 
     @property
@@ -275,12 +288,15 @@ class Motion(ABC):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about accuracy that cannot be guaranteed for this motion."""
+        """Sentences about accuracy that cannot be guaranteed for this motion; empty if there are none."""
         return self.setup.warnings
 
     @cached_property
     def rate_parameters(self) -> list[float]:
-        """The values of the parameters of the rates, for this initial state."""
+        """The values of the parameters of the rates, for this initial state, in the order of the kernel's array p.
+
+        IntegrationStopped is raised if a value exceeds the range of doubles.
+        """
         try:
             return self.setup.rate_binding(self.plan)
         except OverflowError:
@@ -362,8 +378,8 @@ class Motion(ABC):
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
         """Return a function that takes n times, s, and returns omega, shape (3, n), or with the quaternion, (7, n).
 
-        ``path`` is a result of :meth:`path`, and ``with_attitude`` says whether the quaternion is wanted. For a single
-        time the shape is (3,) or (7,).
+        ``path`` is a result of :meth:`path`, and ``with_attitude`` says whether the function returns the quaternion.
+        For a single time the shape is (3,) or (7,).
         """
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
@@ -410,7 +426,10 @@ class ShiftableMotion(RestartableMotion):
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -536,7 +555,10 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
@@ -596,7 +618,10 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 

@@ -236,7 +236,11 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def invariants(self) -> list[Invariant]:
-        """The conserved quantities along the trajectory; their conservation was proven when the kernel was derived."""
+        """The conserved quantities along the trajectory, with the values at the samples and their drift.
+
+        Their conservation was proven when the kernel was derived. If the quaternion is integrated, its norm is the last
+        item. The list may be empty.
+        """
         invariants = []
         conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:

@@ -332,10 +332,15 @@ def longest_followed(
 ) -> float:
     """Return the length of the longest step, at most h, that is proven not to miss more of a torque than is allowed.
 
-    The method is that of :file:`enclosure.h`.
+    A step misses a part of a torque, such as a short pulse, if its polynomial does not show it. The method is that of
+    :file:`enclosure.h`: the step is shortened until the bound is small enough.
 
     Parameters
     ----------
+    deviations : Deviations
+        Bounds of the rates for the parameters of the motion.
+    t, h : float
+        Start and length of the step, s.
     y : N numbers
         States at t.
     path : N sequences

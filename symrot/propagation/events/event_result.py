@@ -93,6 +93,8 @@ class _Side(NamedTuple):
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
     """Return the samples of a motion at ``times``, and all events between its start and the outermost of the times.
 
+    ``times`` are times of the scene, s, in any order, before or after the start.
+
     Raises
     ------
     InputError

@@ -178,8 +178,8 @@ def record(
 ) -> "FallbackRecording":
     """Return the motion over ``span`` as a function from times to states; the arguments are as for :func:`integrate`.
 
-    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion before
-    that time, unless it stopped at its start.
+    ``span`` is a pair of times, s; the start of the motion is added to it. If the motion stops early or is interrupted,
+    the attribute ``recording`` of the exception holds the motion before that time, unless it stopped at its start.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)

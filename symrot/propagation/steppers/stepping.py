@@ -155,8 +155,8 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Part of a span, from ``start`` to ``stop``, s, without switching times inside.
 
-    ``first`` and ``last`` are the times passed to the kernel at the two ends. At a switching time they lie just inside
-    the segment.
+    A torque may jump at a switching time. ``first`` and ``last`` are the times passed to the kernel at the two ends. At
+    a switching time they lie just inside the segment, so that the torque has its value inside.
     """
 
     start: float
@@ -228,7 +228,10 @@ class Recording(ABC):
 
     @abstractmethod
     def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``."""
+        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``.
+
+        The shapes are (n,) and (n, N).
+        """
 
     def __call__(self, t: ArrayLike) -> Floats:
         times = np.asarray(t, dtype=np.float64)
@@ -246,8 +249,8 @@ class Recording(ABC):
 class SteppedRecording(Recording):
     """A motion whose states can be computed at any time, from the recorded steps of a stepper in C.
 
-    ``task`` is the integration; ``backward`` and ``forward`` are its recorded steps before and after the start, one per
-    row.
+    ``task`` is the integration, and ``span`` the interval of time, s. ``backward`` and ``forward`` are its recorded
+    steps before and after the start, one per row.
     """
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
@@ -405,7 +408,7 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether the times never decrease; NaN counts as a decrease. No times are sorted.
+    """Return whether the times never decrease; NaN counts as a decrease. An empty array counts as sorted.
 
     If there are few times, they are compared one by one, which is faster than NumPy.
     """

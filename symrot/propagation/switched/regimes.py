@@ -128,7 +128,8 @@ class Regime:
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
         """Return the parameters of the equations for given modes, as functions of the epoch.
 
-        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values.
+        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values. The epoch is the
+        scene time at which the clock of the motion shows 0.
         """
         key = tuple(modes.values())
         if key not in self._parameters:

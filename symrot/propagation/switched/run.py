@@ -50,7 +50,7 @@ SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
 class Chunk(NamedTuple):
     """Part of a motion from ``start`` to ``stop``, as a function from times to states and as polynomials.
 
-    Its own function and polynomials take the time since the instant ``zero``; the methods take times of the scene.
+    ``own_states`` and ``own_piece`` take the time since the instant ``zero``; the methods take times of the scene.
     """
 
     start: Instant
@@ -99,7 +99,10 @@ class SwitchedRun(RunState):
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known."""
+        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known.
+
+        IntegrationStopped is raised if the motion cannot be followed; the parts before that time have been passed on.
+        """
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -120,14 +123,17 @@ class SwitchedRun(RunState):
 
     @property
     def now(self) -> float:
-        """The present time on the clock of the scene, s."""
+        """The present time of the motion on the clock of the scene, s, rounded to one double."""
         return self.zero.after(self.t).high
 
     def _at(self, t: float) -> Instant:
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``."""
+        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``.
+
+        The attributes ``t`` and ``end``, times on this clock, change too.
+        """
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
@@ -363,8 +369,8 @@ class SwitchedRun(RunState):
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
         """Return the time of a switch near t, at which the formula of a guard is zero, as an :class:`Instant`.
 
-        If the formula depends on time alone, one step of Newton's method from t gives the zero to twice the digits of
-        a double. Otherwise t itself is returned.
+        A guard is a formula at whose zero a function such as sign switches. If the formula depends on time alone, one
+        step of Newton's method from t gives the zero to twice the digits of a double. Otherwise t itself is returned.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -388,8 +394,9 @@ class SwitchedRun(RunState):
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
         """Return the time of a switch, moved past the zero of its guard; the guard must be a formula of time alone.
 
-        The result is the first of a few instants at which the formula is not positive. At an earlier instant, the
-        function (sign, floor, ..) would switch back at once.
+        A guard is a formula at whose zero a function such as sign switches. The result is the first of a few instants
+        at which the formula is not positive. At an earlier instant, the function would switch back at once. If the
+        formula is positive at all of them, ``instant`` is returned.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -553,7 +560,8 @@ class SwitchedRun(RunState):
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
         """Return the values of all switching functions and the set of held ones, for comparison with earlier states.
 
-        If a name is given, the state is the one after ``flip`` has changed its sign, or after ``hold`` becomes held.
+        A function such as sign is held while its argument stays at zero. If a name is given, the state is the one after
+        ``flip`` has changed its sign, or after ``hold`` becomes held.
         """
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
