@@ -33,7 +33,7 @@ PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
+    """One program at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
 
     measured: Measured
     apart: float

@@ -45,7 +45,10 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of the end states of an ensemble, shape (n, N)."""
+        """Return the largest error of the end states of an ensemble, one row for each trajectory.
+
+        Only the first trajectories have an exact end state and are compared.
+        """
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 

@@ -222,7 +222,10 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function that calls ``run(repeats, place)`` with enough repeats, and returns its time per sample, s."""
+    """Return a function that calls ``run(repeats, place)`` long enough for the clock; it returns s per sample.
+
+    Its argument ``place`` is the number of the block of memory; one call of ``run`` handles ``samples`` samples.
+    """
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
@@ -422,7 +425,7 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the table of a kernel as lines: its contestants, and symrot's ratios to the best other tool."""
+    """Return the table of the kernel ``name`` as lines: its contestants, and symrot's ratios to the best other tool."""
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
     lines = [

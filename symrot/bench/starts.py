@@ -116,7 +116,7 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return an angular velocity and a quaternion near the initial state of a scene."""
+    """Return an angular velocity and a quaternion that differ a little from the initial state of a scene."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
@@ -139,7 +139,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 class _Row(NamedTuple):
-    """A row of the first table: microseconds of calls with another omega, with another attitude, and with both."""
+    """A row of the first table: microseconds of calls with a new omega, a new attitude, or both, and their parts."""
 
     parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
     motion: float  # the motion itself, with both changed

@@ -82,7 +82,7 @@ REFERENCES = Path(__file__).with_name("taylor.toml")
 
 
 class Run(NamedTuple):
-    """One contestant at one tolerance: steps, error of the last state, seconds of each round."""
+    """One stepper at one tolerance: steps, error of the last state, seconds of each round."""
 
     name: str
     tolerance: float

@@ -61,7 +61,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Measured:
-    """The largest error of a function in one form, and the argument where it occurs."""
+    """The largest error of a function in one form (one sample or batch), and the argument where it occurs."""
 
     name: str
     real: str

@@ -31,7 +31,7 @@ class Surface(NamedTuple):
     triangles: Indices
 
     def flipped(self) -> "Surface":
-        """Return the surface with the opposite orientation."""
+        """Return the surface with the opposite orientation: the corners of each triangle in reverse order."""
         return Surface(self.vertices, np.ascontiguousarray(self.triangles[:, ::-1]))
 
 

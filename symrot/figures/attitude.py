@@ -95,7 +95,7 @@ def _brick(picture: Picture, view: View, matrix: Floats) -> None:
 
 
 def intermediate_frames(sequence: str, angles: Sequence[float]) -> list[Floats]:
-    """Return four frames: before, between and after the three rotations of an intrinsic sequence.
+    """Return four frames: before the first of the three rotations of an intrinsic sequence, and after each of them.
 
     Each frame is a matrix whose columns are its axes; ``angles`` are in degrees.
     """

@@ -220,7 +220,7 @@ def rates() -> Picture:
 
 
 def _components(times: Floats, omega: Floats, at: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Picture:
-    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the time."""
+    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the span."""
     picture = Picture()
     limit = 1.12 * float(np.abs(omega).max())
     axes = Axes(picture, (times[0], times[-1]), (-limit, limit), (420, 200))

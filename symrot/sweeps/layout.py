@@ -173,7 +173,7 @@ def difference(own: Mapping[str, str], other: object) -> str:
 
 
 def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a chunk, without status and messages, as a map from the names in the header.
+    """Return the arrays of a chunk by name, as the header of a store names them, without status and messages.
 
     ``names`` are the names of the values that vary, in the order of the draws.
     """
@@ -184,7 +184,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
 
 def messages_of(chunk: Chunk) -> NDArray[Any]:
-    """Return the messages of a chunk, one text for each trajectory."""
+    """Return the messages of a chunk, one text for each trajectory; it is empty for a trajectory that was computed."""
     texts = np.full(chunk.stop - chunk.start, "", dtype=object)
     for row, message in chunk.messages.items():
         texts[row] = message

@@ -34,7 +34,7 @@ VIEW = {"elev": 22.0, "azim": -52.0}
 
 
 def require_encoder(path: Path) -> None:
-    """Raise InputError if a package needed to write a film to this path is not installed."""
+    """Raise InputError if a package needed to write a film to ``path``, such as matplotlib, is not installed."""
     if find_spec("matplotlib") is None:
         raise InputError(
             f"{path}: expected matplotlib, but it is not installed; install it with pip install 'symrot[film]'"
@@ -192,7 +192,7 @@ def _curves(patch: Patch) -> list[list[Point]]:
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch.
+    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch of the body's surface.
 
     Neighbouring quarters of a round surface differ in brightness, so that its rotation can be seen.
     """

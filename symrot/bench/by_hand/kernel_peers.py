@@ -110,7 +110,7 @@ def textbook(name: str) -> list[sympy.Expr]:
 
 
 def input_names(name: str) -> list[str]:
-    """Return the names of the components of a kernel's inputs, in order."""
+    """Return the names of the numbers that the kernel ``name`` takes, in order: ``q0`` to ``q3`` for a quaternion."""
     return [name for a in kernel_program(name).signature.arguments if a.role == "in" for name, *_ in a.components]
 
 
@@ -140,7 +140,7 @@ def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any
 
 
 def products(node: Node) -> Node:
-    """Return a formula with integer powers written as products, since C has no power operator."""
+    """Return the formula ``node`` with integer powers written as products (x*x), since C has no power operator."""
     if not children(node):
         return node
     if node[0] == "**":

@@ -122,7 +122,7 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
-        """Return the states at a time that is not before the start; mpmath must be set to 40 digits.
+        """Return the integrated states at the time ``t``, not before the start; mpmath must be set to 40 digits.
 
         ``on_step`` is called after each step with the time reached; an exception that it raises ends the computation.
         """
@@ -138,7 +138,7 @@ class ExactPath:
         return self._sum(self.pieces[low][2], t - self.pieces[low][0])
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at ``times``, none of them before the start, rounded to double, shape (n, N)."""
+        """Return the integrated states at ``times``, none before the start, as doubles, one row for each time."""
         with mpmath.workdps(DIGITS):
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 

@@ -57,7 +57,7 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel as a function ``f(t, y, p)`` for SciPy, rewritten for a single state (a list).
+    """Return the NumPy function that symrot emits for dy/dt as ``f(t, y, p)`` for SciPy, for one state (a list).
 
     Python floats and :mod:`math` replace zero-dimensional arrays. This halves the time; an expert would do it too.
     """

@@ -36,7 +36,7 @@ Progress = Callable[[str], object]
 
 
 def motions() -> dict[str, tuple[str, Scene]]:
-    """Return a map from the name of each motion in the suite to (kind of motion, scene)."""
+    """Return a map from the name of each motion in the suite to (kind of motion in words, scene)."""
     scenes = {}
     for name, entry in read_toml(SUITE, SUITE.name).items():
         entry_scene = entry["scene"]
@@ -124,7 +124,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results as JSON text with one line for each motion.
+    """Return the results of the suite as JSON text with one line for each motion, for comparison line by line.
 
     Numbers are rounded to four significant digits.
     """

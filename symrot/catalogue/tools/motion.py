@@ -32,7 +32,7 @@ def attitude_rates() -> dict[Symbol, Expr]:
 
 
 def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
-    """Return d/dt of an expression or matrix by the chain rule; ``rates`` gives the rate of each variable."""
+    """Return d/dt of an expression or matrix ``quantity`` by the chain rule, with the rate of each variable."""
     terms = (quantity.diff(variable) * speed for variable, speed in rates.items())
     first = next(terms)
     return sum(terms, first)
