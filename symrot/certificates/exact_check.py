@@ -197,7 +197,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that a C function, in its versions for one sample and for many (``_batch``), computes its formulas."""
+    """The check that a C function computes its formulas, in its versions for one sample and for many (``_batch``)."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
@@ -468,7 +468,10 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return a map from the name of each function in a C text to the tuple (static, type, arguments, body)."""
+    """Return the functions in a C text, by name: tuples (is it static, type, arguments, body).
+
+    ``name`` is the kernel and ``files`` the certified files, which decide the includes that the text may have.
+    """
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]

@@ -158,7 +158,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return a text as C string literals on several lines, for one entry of an array."""
+    """Return a text as string literals of C on several lines, for one entry of an array; long lines are broken."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 

@@ -18,7 +18,10 @@ CLEARLY = 1e-4
 
 
 class NoValue(ArithmeticError):
-    """The exception for a formula that has no real value at a point, or contains an unknown function."""
+    """The exception for a formula that has no real value at a point, or whose value cannot be computed.
+
+    An unknown function is one reason.
+    """
 
 
 def _cosecant(function: Any) -> Any:

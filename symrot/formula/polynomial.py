@@ -92,10 +92,9 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficients of the polynomial in the generators ``names``.
+        """Return the coefficients of the polynomial in the generators ``names``, by exponents.
 
-        A mapping from exponents to coefficients. With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0):
-        5}``.
+        With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
         """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
@@ -194,9 +193,9 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return a sort key for monomials.
+    """Return a sort key for monomials in the generators ``names``.
 
-    Their exponents of the generators ``names``, so that the order is lexicographic.
+    It is the tuple of exponents, so that the order is lexicographic.
     """
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 

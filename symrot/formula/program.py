@@ -151,7 +151,7 @@ class Program:
 def node_to_json(node: Node) -> list[Any]:
     """Return a formula as nested lists for JSON, with numbers as exact text.
 
-    ``["*", ["number", "1/2"], ["symbol", "q0"]]``.
+    The formula ``q0/2`` is ``["/", ["symbol", "q0"], ["number", "2"]]``.
     """
     kind = node[0]
     if kind == "number":

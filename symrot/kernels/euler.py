@@ -62,11 +62,10 @@ def _regular_box(sequence: str) -> Box:
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return (definitions, entries).
+    """Return (definitions, entries): the entries of a matrix, with symbols for products such as ``sin(phi)*cos(psi)``.
 
-    The entries of a matrix with a symbol for each product such as ``sin(phi)*cos(psi)``. Definitions are pairs (symbol,
-    product). The factors of such a product are functions of the first and of the last angle; several entries contain
-    it. In a sum, a common factor, which depends on the middle angle, is factored out.
+    Definitions are pairs (symbol, product). The factors of such a product are functions of the first and of the last
+    angle; several entries contain it. In a sum, a common factor, which depends on the middle angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []

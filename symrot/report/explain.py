@@ -132,7 +132,10 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return a list with the table row about a torque given by samples; empty if the scene has no such torque."""
+    """Return a list with one row of the table `symrot explain`, about a torque given by samples in a file.
+
+    The list is empty if the scene has no such torque.
+    """
     table = plan.scene.table
     if table is None:
         return []

@@ -73,7 +73,10 @@ class RuleRecord(TypedDict):
 
 
 class CostRecord(TypedDict):
-    """The cost of a motion: numbers of steps and of evaluations of the equations of motion, and seconds."""
+    """What a motion cost: steps, evaluations of the equations of motion, and seconds.
+
+    ``rejected`` counts the steps that were tried again; ``preparation_seconds`` is the time until the kernel was ready.
+    """
 
     steps: int
     rejected: int
@@ -94,7 +97,10 @@ class SwitchingRecord(TypedDict):
 
 
 class InvariantRecord(TypedDict):
-    """A conserved quantity and its drift along a trajectory; see :class:`symrot.propagation.trajectory.Invariant`."""
+    """A quantity that the motion conserves, and how far its computed value drifts.
+
+    See :class:`symrot.propagation.trajectory.Invariant`.
+    """
 
     name: str
     unit: str
@@ -219,7 +225,7 @@ class ArrayRecord(TypedDict):
 
 
 class DriftRecord(TypedDict):
-    """The drift of one conserved quantity over a motion, as recorded in a file of samples."""
+    """How far one conserved quantity drifts over a motion, as recorded in a file of samples."""
 
     name: str
     unit: str

@@ -224,7 +224,7 @@ FORMS: dict[str, Callable[[Chapters], dict[str, bytes]]] = {"latex": _latex, "ht
 
 
 def _converted(directory: Path, figures: list[Figure]) -> list[Path]:
-    """Convert figures to PDF, and return the paths of the files."""
+    """Convert figures to PDF files in ``directory`` with the program :data:`CONVERTER`; return their paths."""
     paths = []
     for figure in figures:
         path = (directory / figure.file).with_suffix(".pdf")

@@ -104,7 +104,7 @@ class PythonRecord(TypedDict):
 
 
 class DoctorReport(TypedDict):
-    """State of this installation; the version of a package that is missing is None."""
+    """The state of this installation: versions, extras, compiler, cache; the version of a missing package is None."""
 
     symrot: str
     python: PythonRecord

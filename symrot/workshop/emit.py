@@ -75,7 +75,7 @@ class Emitted(_Texts):
 
     @cached_property
     def certificate(self) -> str:
-        """The text of the kernel's certificate; raises CertificateError if a proof fails."""
+        """The text of the kernel's certificate, a JSON file of proofs; CertificateError is raised if a proof fails."""
         return self.text.certificate(self.bounds)
 
 

@@ -87,12 +87,15 @@ class KernelText(ABC):
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if a proof fails."""
+        """Return the text of the kernel's certificate with the section ``bounds``;
+
+        CertificateError if a proof fails.
+        """
         text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text; the header comes first."""
+        """Return the C files as a map from name to text: the header, the source and the headers that they need."""
         source, header = self.c(bounds)
         shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in source else {}
         return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
@@ -108,7 +111,7 @@ class KernelText(ABC):
         return self.c_files(bounds) if target == "c" else {f"{self.name}{SUFFIX[target]}": self.source(target)}
 
     def _certified_files(self, bounds: Bounds | None) -> dict[str, str]:
-        """Return the files that a certificate lists, in its order: the C source comes first."""
+        """Return the files whose hashes a certificate states, as a map from name to text; the C source comes first."""
         files, source = self.c_files(bounds), f"{self.name}.c"
         others = {
             f"{folder}/{file}": text

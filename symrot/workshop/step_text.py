@@ -247,7 +247,7 @@ class StepText(KernelText):
 
     @cached_property
     def _test(self) -> str:
-        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+        """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
         count, outputs, parameters = len(self._vectors[0][0]), len(self._vectors[0][2]), self.rates.inputs.parameters
         columns = "STATES" if outputs == count else "OUTPUTS"
         included = [f'#include "{parameters_file(self.name)}"'] if parameters else []

@@ -44,7 +44,10 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of a table of bounds, one bound per line, in the order of the keys."""
+    """Return the text of the table of bounds that comes with symrot, one bound per line, in the order of the keys.
+
+    ``bounds`` are pairs (key, result of a search); the key is the hash of the task.
+    """
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 

@@ -41,9 +41,10 @@ SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has re
 
 @dataclass(frozen=True)
 class Real:
-    """A floating-point type of C.
+    """A floating-point type of C, with the names and literals that C code for it contains.
 
-    Its name (``type``), the suffix of its functions (as in ``sinf``), and its precision.
+    ``type`` is its name, ``suffix`` that of its functions and literals (as in ``sinf``), ``precision`` its format, such
+    as ``binary64``.
     """
 
     type: str
@@ -350,10 +351,10 @@ def _blocks(size: str) -> list[str]:
 def _split(program: Program) -> list[Program]:
     """Return the programs for which a batch gets separate loops.
 
-    One for each output argument, or the whole program alone. Separate loops are faster if the whole program accesses
-    more arrays than processors prefetch and each part does not, provided that no operation is done twice and the number
-    of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines take longer than
-    memory access.
+    This is one program for each output argument, or the whole program alone. Separate loops are faster if the whole
+    program accesses more arrays than processors prefetch and each part does not, provided that no operation is done
+    twice and the number of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines
+    take longer than memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")

@@ -102,7 +102,7 @@ class _Closure:
     def constant(self, node: Node) -> Polynomial:
         """Return a constant formula as a polynomial.
 
-        Each part that is not a polynomial, such as a root, is a variable.
+        Each part of it that is not a polynomial, such as a root, becomes a variable.
         """
         if node[0] == "number":
             return constant(node[1])

@@ -161,7 +161,7 @@ class _Jet:
     def weight(self, node: Node) -> str:
         """Return the C expression of a positive constant.
 
-        A literal for a number, ``c[k]`` for a formula of parameters.
+        It is a literal for a number, and ``c[k]``, an element of the array of constants, for a formula of parameters.
         """
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"

@@ -24,9 +24,9 @@ ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The place of a series.
+    """The place of a series: number of its row, its lane in this row, and a sign as factor.
 
-    Number of its row, lane in this row, and a sign (1, -1, or 0 for the value zero) as factor.
+    The sign is 1, -1, or 0; the last gives the value zero.
     """
 
     sign: int
@@ -256,7 +256,7 @@ class _Placer:
     def address(self, sign: int, series: int, lane: int) -> Address:
         """Return the position of a series in its row.
 
-        In the given lane if a copy is there, otherwise in its first lane.
+        A row may contain copies of a series; the one in ``lane`` is preferred to the first one.
         """
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
@@ -402,9 +402,9 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return (weight, products) with a positive first product.
+    """Return (weight, products) so that the first product has a positive sign.
 
-    If it is negative, all signs change, that of the weight too.
+    If it is negative, the signs of the weight and of all products are changed. So equal sums are recognised as equal.
     """
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

@@ -270,12 +270,12 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add the Taylor series of functions whose derivatives contain each other, as sine and cosine.
+        """Return the index of the first of several Taylor series of functions whose derivatives contain each other.
 
-        Return the first index. Each function is given by its name and the sign of its derivative. ``partners`` holds,
-        for each function, the position of the function that its derivative contains: for sine the position of cosine.
-        Functions of ``a t + b`` get the rule ``clock``, others the rule ``driven``. Series that exist are not added
-        again.
+        Sine and cosine are such functions. Each is given by its name and the sign of its derivative. ``partners``
+        holds, for each function, the position of the function that its derivative contains: for sine the position of
+        cosine. The series are added if they do not exist: with the rule ``clock`` for functions of ``a t + b``,
+        otherwise with ``driven``.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -360,7 +360,7 @@ class _Builder:
 def _without_unused(system: Recurrences) -> Recurrences:
     """Return the system without the series that no rate needs, directly or through operands.
 
-    Series of states remain.
+    The series of states remain in any case.
     """
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
@@ -390,9 +390,9 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return an equal, shorter constant formula.
+    """Return a shorter constant formula of equal value.
 
-    Numbers are combined, factors of 1 removed, a sign is moved to the front.
+    Numbers are combined, factors of 1 removed, and a sign is moved to the front.
     """
     kind, parts = node[0], children(node)
     if kind == "neg":
@@ -415,9 +415,9 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return (sign, formula) whose product is a constant formula.
+    """Return (sign, formula) whose product is a constant formula; the formula has no sign in front.
 
-    (-1, a) for ``-a``, (-1, 2) for -2, otherwise (1, itself).
+    The formula ``-a`` gives -1 and a, the number -2 gives -1 and 2, and ``a`` gives 1 and a.
     """
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
@@ -428,7 +428,10 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return (number, formula) whose product equals a constant formula: (-2, a) for ``-(2*a)``, (1, a) for ``a``."""
+    """Return (number, formula) whose product equals a constant formula.
+
+    The formula ``-(2*a)`` gives -2 and a, and ``a`` gives 1 and a.
+    """
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

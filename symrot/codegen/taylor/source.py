@@ -124,9 +124,9 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a pack.
+        """Return the C expression for the newest coefficients of a pack, a vector of four series.
 
-        A variable if one exists, else :meth:`picked`.
+        It is the name of a variable if there is one, otherwise the result of :meth:`picked`.
         """
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
@@ -148,8 +148,8 @@ class _Jet:
     def column(self, index: int, phase: str, sums: str) -> str:
         """Return the C expression for coefficient n of column ``index``, a vector of four convolutions.
 
-        Empty if it is zero. It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the
-        terms k = 0 and k = n.
+        It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the terms k = 0 and k =
+        n. An empty text stands for zero.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
@@ -171,11 +171,11 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a row of the rule ``sum``.
+        """Return the C expression for a row of the rule ``sum``, which consists of four weighted sums of series.
 
-        Four weighted sums of series, times ``factor`` if not empty. ``phase`` and ``sums`` are explained in the class
-        and in :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added
-        last, so that the other additions need not wait for them.
+        They are multiplied by ``factor`` if it is not empty. ``phase`` and ``sums`` are explained in the class and in
+        :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added last,
+        so that the other additions need not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]

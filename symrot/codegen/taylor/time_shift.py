@@ -139,8 +139,8 @@ class _Mover:
     def gathered(self, node: Node) -> _Form | None:
         """Return a sum in which all terms of the form a t + b are combined into one.
 
-        Far from t = 0 their b may nearly cancel. Return None if all terms have this form, if fewer than two have it, or
-        if none of these terms contains the time; then nothing is to be combined.
+        Far from t = 0 the constants b may nearly cancel. The result is None if there is nothing to combine: if all
+        terms have this form, if fewer than two have it, or if none of these terms contains the time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []

@@ -12,9 +12,11 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return the divisors of formulas, each as (divisor as written, factor that must not be zero).
+    """Return what must not be zero in the formulas of a ring, as pairs (divisor as written, one of its factors).
 
-    Factors whose numbers are in ``granted`` are left out. A factor that is a root is replaced by its radicand.
+    Each factor of a divisor has a pair; a factor that is a root is replaced by its radicand. Factors whose numbers are
+    in ``granted`` are left out, and so are those that cannot be zero. Arguments of logarithms and ``x^2 + y^2`` of
+    ``atan2(y, x)`` count too.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
@@ -62,7 +64,7 @@ def is_dense(ring: FormulaRing) -> bool:
 
 
 def _is_plain(atom: Expr) -> bool:
-    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers."""
+    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers alone."""
     if is_leaf(atom):
         return True
     if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
@@ -71,13 +73,19 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return formulas that are nonnegative wherever the formulas of the ring are defined, such as radicands."""
+    """Return formulas that are nonnegative wherever the formulas of the ring are defined.
+
+    They are the radicands, and 1 + x and 1 - x for asin(x) and acos(x).
+    """
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 
 
 def _leaves(ring: FormulaRing) -> Iterable[Expr]:
-    """Return the inverse functions and logarithms in the formulas of a ring, also those inside sines and cosines."""
+    """Return the inverse functions and logarithms in the formulas of a ring, whose arguments limit the domain.
+
+    Those inside sines and cosines are included.
+    """
     leaves = [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
     return [*(leaf for leaf in leaves if leaf not in ring.own_logarithms), *ring.logarithms]
 
@@ -95,5 +103,5 @@ def _nonnegative(leaf: Expr) -> list[Expr]:
 
 
 def _is_square(base: Expr) -> bool:
-    """Return whether a radicand is an even power of a real number."""
+    """Return whether a radicand is written as an even power of a real number, so that it is never negative."""
     return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

@@ -157,7 +157,7 @@ class _Interpreter(Cursor):
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Read the length of a vector, such as ``|v|``, after its first bar; return its value."""
+        """Return the length of a vector ``|v|``, optionally with an exponent; its first bar has been read."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:

@@ -275,7 +275,7 @@ class ExactStepText(KernelText):
 
     @cached_property
     def _test(self) -> str:
-        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+        """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
 
         def table(declared: str, values: Any) -> str:
             rows = ", ".join(
