@@ -58,7 +58,10 @@ class PrincipalInertia(NamedTuple):
 
 
 class InertiaTensor(NamedTuple):
-    """An inertia tensor with products of inertia: the sorted names of its nonzero entries, such as ``I_xy``."""
+    """An inertia tensor with products of inertia: the sorted names of its entries that are not zero.
+
+    Example: ``("I_xx", "I_xy", "I_yy", "I_zz")``.
+    """
 
     entries: tuple[str, ...]
 
@@ -207,7 +210,7 @@ class Structure:
 
     @property
     def moving(self) -> list[int]:
-        """The indices, 0 to 2, of the components of omega_b that are states."""
+        """The indices, 0 to 2, of the components of omega_b that change and are therefore states."""
         return [i for i in range(3) if self.constant[i] is None and self.planar in (None, i)]
 
     @property

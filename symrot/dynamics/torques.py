@@ -71,7 +71,7 @@ class Motion:
 class TorqueLaw:
     """The formula of one torque, with the potential and the angular momentum that it contributes.
 
-    All vectors are in body components. A rotor has an angular momentum and no torque; a spring has a torque and a
+    All vectors are in body components. A rotor contributes an angular momentum and no torque, a spring a torque and a
     potential.
     """
 
@@ -255,7 +255,10 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque, body components, that a law's potential exerts: minus its derivatives by rotations."""
+    """Return the torque, body components, that a law's potential exerts: minus its derivatives by small rotations.
+
+    It is compared with the law's own formula, to prove that both agree.
+    """
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

@@ -108,7 +108,7 @@ _POINTERS = (
 
 
 class _Job(ctypes.Structure):
-    """The C struct ``symrot_job`` of lanes.c: the work of one thread."""
+    """The C struct ``symrot_job`` of lanes.c: the motions that one thread integrates, and where their results go."""
 
     _fields_ = (
         ("legs", ctypes.c_int64),
@@ -165,7 +165,10 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Integrate all motions of a job to their ends, or until ``interrupted`` returns true."""
+        """Integrate all motions of a job to their ends, or until ``interrupted()`` returns true.
+
+        The results are written to the arrays whose addresses the job holds.
+        """
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -253,7 +256,7 @@ class LaneIntegration:
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
     def run(self) -> Outcome:
-        """Integrate the motions and return their states at the sample times."""
+        """Integrate the motions and return their states at the sample times, with the cost of each motion."""
         n, total, legs = len(self.y), self.total, self.legs
         states = np.full((n * self.samples, self.library.states), np.nan)
         measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)

@@ -47,7 +47,7 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of trajectory ``chosen[k]``, by name, as exact fractions."""
+        """Return all constants of trajectory ``chosen[k]`` as exact fractions, by name, such as ``weight`` or ``A``."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:

@@ -171,7 +171,10 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The size of products of inertia, kg m^2, below which the body axes count as principal, shape (n,)."""
+        """The limit, kg m^2, up to which products of inertia count as zero, for each trajectory, shape (n,).
+
+        A trajectory whose products are all this small counts as given in principal axes.
+        """
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
@@ -219,10 +222,10 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return groups of trajectories, as row indices in order, such that :meth:`plan` is the same within each group.
+        """Return groups of trajectories, as arrays of row indices, such that all of a group have the same plan.
 
-        The group of a trajectory, and therefore its plan, depends only on its own constants: on which of them are zero,
-        and on which moments of inertia are equal.
+        The group of a trajectory depends only on its own constants: on which of them are zero, and on which moments of
+        inertia are equal.
         """
         bits = [column != 0 for column in self.columns.values()]
         if not PLACES.keys().isdisjoint(self.columns):

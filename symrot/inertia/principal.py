@@ -199,7 +199,7 @@ def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
 
 
 def require_admissible(body: Principal, where: str = "") -> None:
-    """Raise InputError unless some distribution of mass has these principal moments.
+    """Raise InputError unless some distribution of mass has the principal moments of ``body``.
 
     No moment of inertia may be negative or exceed the sum of the other two. It may equal this sum (a flat body), and
     one moment may be zero (a needle); the tolerance is 2^-200.

@@ -96,9 +96,9 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, as a function of three fractions.
+    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, for its map.
 
-    The fraction f_1 is 0 at corner 1 and 1 on the opposite face.
+    The formula depends on three fractions from 0 to 1; f_1 is 0 at corner 1 and 1 on the opposite face.
     """
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 

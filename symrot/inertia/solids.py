@@ -110,34 +110,40 @@ class Solid:
 
     @property
     def shape(self) -> Shape:
-        """The shape of the body: map, limits, axes and origin."""
+        """The row of the table of shapes for this body: its dimensions, map, limits and axes."""
         return SHAPES[self.name]
 
     @property
     def volume(self) -> Expr:
-        """The volume of a solid, the area of a surface, or the length of a curve."""
+        """The measure of the body: the volume of a solid, the area of a surface, or the length of a curve."""
         return self.measure
 
     @cached_property
     def position(self) -> ImmutableMatrix:
-        """The map of the shape: position in m as a function of coordinates, shape (3, 1); empty for point masses."""
+        """The map of the shape: position (m), shape (3, 1), as a function of coordinates such as a radius and an angle.
+
+        It is empty for point masses.
+        """
         known = {**_CONSTANTS, **_MAP_SYMBOLS, **self.dimensions}
         return ImmutableMatrix([evaluate(parse(t), known, _FUNCTIONS, _rational) for t in self.shape.position])
 
     @cached_property
     def jacobian(self) -> Expr:
-        """The Jacobian of the map: volume, area or length per unit of the coordinates."""
+        """The Jacobian of the map :attr:`position`: volume, area or length per unit of the coordinates."""
         return _tidy(self._over(_mapped(self.name).jacobian))
 
     @cached_property
     def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
-        """The coordinates of the map, each with its lower and upper limit."""
+        """The coordinates of the map :attr:`position`, each with its lower and upper limit."""
         limits = _mapped(self.name).limits
         return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in limits)
 
     @cached_property
     def steps(self) -> tuple[Integral, ...]:
-        """The integrals behind the result: measure, mass, first moments and second moments about the origin."""
+        """The integrals that give the result: measure, mass, first moments and second moments about the origin.
+
+        It is empty for point masses.
+        """
         if not self.limits:
             return ()
         weight = self.density.xreplace(dict(zip(symbols.position, self.position, strict=True))) * self.jacobian
@@ -158,7 +164,7 @@ class Solid:
         return _tidied(tensor.about_point(self.inertia, self.mass, offset))
 
     def with_mass(self, mass: Any) -> "Solid":
-        """Return the same body with its density scaled to a total mass (kg)."""
+        """Return the same body with its density scaled so that its total mass is ``mass``, kg."""
         total = _scalar(mass)
         inertia = _tidied(tensor.scale(total / self.mass, self.inertia))
         return replace(self, mass=total, density=_tidy(self.density * total / self.mass), inertia=inertia)

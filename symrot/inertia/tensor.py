@@ -62,7 +62,7 @@ def subtract(left: Any, right: Any) -> Tensor:
 
 
 def scale(factor: Any, tensor: Any) -> Tensor:
-    """Return a tensor times a scalar factor."""
+    """Return ``tensor``, three rows of three numbers, times the scalar ``factor``."""
     return _entrywise(lambda a: factor * a, tensor)
 
 
@@ -84,7 +84,7 @@ def cross(left: Any, right: Any) -> Vector:
 
 
 def apply(tensor: Any, v: Any) -> Vector:
-    """Return the product of a tensor and a vector."""
+    """Return the product of ``tensor``, 3 x 3, and the vector v, as a tuple of three numbers of any type."""
     first, second, third = matrix(tensor)
     return dot(first, v), dot(second, v), dot(third, v)
 

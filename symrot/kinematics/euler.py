@@ -201,10 +201,11 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are regular at the attitude with the given angles of this sequence.
+        """Return the sequences, of all 24, that are not in gimbal lock at one attitude.
 
-        If some angles are symbols, a sequence is left out only if it is singular for all values of the symbols. A float
-        stands for the exact rational number that it represents.
+        ``angles`` (default: the symbols) give this attitude as angles of the present sequence. If some are symbols, a
+        sequence is left out only if it locks for all values of the symbols. A float stands for the exact rational
+        number that it represents.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
@@ -371,7 +372,10 @@ def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
 
 @cache
 def chart(sequence: str) -> Chart:
-    """Return the chart of an Euler sequence: it describes every attitude, and is singular at gimbal lock."""
+    """Return the chart (attitude description) of an Euler sequence: it describes every attitude.
+
+    It is singular at gimbal lock.
+    """
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return Chart(
         name=sequence,

@@ -61,7 +61,7 @@ class Projection:
         return ImmutableMatrix(self.homogeneous(values) / self.norm(values))
 
     def dcm(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-        """Return ``dcm_sb``, shape (3, 3), as rational functions of the parameters."""
+        """Return ``dcm_sb``, shape (3, 3), as rational functions of the parameters ``values`` (default: symbols)."""
         return _dcm(self, expressions(self.parameters if values is None else values, 3, self.name))
 
     def rate_matrix(self, frame: str = "body") -> RateMatrix:
@@ -147,7 +147,7 @@ def projection(name: str) -> Projection:
 
 
 def chart(name: str) -> Chart:
-    """Return the chart called ``"rodrigues"`` (classical) or ``"mrp"`` (modified parameters).
+    """Return the chart (attitude description) ``"rodrigues"`` (classical) or ``"mrp"`` (modified parameters).
 
     The first cannot describe rotations by pi, the second rotations by 2 pi.
     """

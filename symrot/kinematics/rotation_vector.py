@@ -218,7 +218,10 @@ def _axis_angle_along(frame: str, alpha: Expr) -> tuple[Expr, ImmutableMatrix]:
 
 @cache
 def chart() -> Chart:
-    """Return the chart of rotation vectors: it describes every attitude, and is singular at |v| = 2 pi, 4 pi, ..."""
+    """Return the chart (attitude description) of rotation vectors v: it describes every attitude.
+
+    It is singular at \\|v\\| = 2 pi, 4 pi, ...
+    """
     return Chart(
         name="rotation_vector",
         parameters=symbols.rotation_vector,
@@ -234,7 +237,10 @@ def chart() -> Chart:
 
 @cache
 def axis_angle_chart() -> Chart:
-    """Return the chart of a unit axis and an angle: it describes every attitude, and is singular at zero angle."""
+    """Return the chart (attitude description) of a unit axis and an angle: it describes every attitude.
+
+    It is singular at zero angle, where no axis is defined.
+    """
     n, alpha = symbols.axis, symbols.alpha
     return Chart(
         name="axis_angle",

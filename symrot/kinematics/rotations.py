@@ -31,7 +31,10 @@ FRAMES = ("body", "space")
 
 
 def check_frame(frame: str) -> str:
-    """Return ``frame``; raise ``InputError`` if it is neither ``"body"`` nor ``"space"``."""
+    """Return ``frame``, which says whether omega has body or space components.
+
+    Anything but ``"body"`` and ``"space"`` raises ``InputError``.
+    """
     if frame not in FRAMES:
         raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame
@@ -63,7 +66,10 @@ def unit_vector(axis: int | str) -> ImmutableMatrix:
 
 
 def cross_sign(first: int, second: int) -> tuple[int, int]:
-    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes."""
+    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes with numbers 0 to 2.
+
+    Example: axes 0 and 2 give (1, -1).
+    """
     ((m, sign),) = ((k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second))
     return m, sign
 

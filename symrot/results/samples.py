@@ -63,7 +63,10 @@ class Samples(ABC):
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
     def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (...)."""
+        """Return, for each sample, whether the Euler angles of ``sequence`` are at gimbal lock, shape (...).
+
+        There only the sum or the difference of the first and the third angle is defined.
+        """
         return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
 
     def _to_space(self, vectors_b: Floats) -> Floats:
@@ -141,7 +144,7 @@ class MotionSamples(Samples):
     @property
     @abstractmethod
     def scene(self) -> Scene:
-        """The scene of the motion."""
+        """The scene of the motion: body, torques, initial state and output quantities."""
 
     @abstractmethod
     def _evaluate(self, *names: str) -> Floats:

@@ -79,7 +79,11 @@ def _write_table(content: Content, name: str, lines: list[str]) -> None:
 
 
 def _is_section(key: str, value: Any, name: str) -> bool:
-    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables."""
+    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables.
+
+    ``key`` is its key and ``name`` the dotted name of the table that contains it; other values are written as ``key =
+    value``.
+    """
     if isinstance(value, list):
         return bool(value) and all(isinstance(item, dict) for item in value)
     return isinstance(value, dict) and not name

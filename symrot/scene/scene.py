@@ -278,7 +278,7 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return body and torques of a scene; :meth:`Scene.to_dict` refuses to write them if they were replaced."""
+    """Return the body, the torques and the table of a scene: the parts that :meth:`Scene.to_dict` cannot write anew."""
     return scene.body, scene.torques, scene.table
 
 

@@ -242,7 +242,8 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
     """Return the values of an ``expression`` torque, after a check that its formulas contain only known names.
 
-    If a formula contains pi, pi is added to the parameters.
+    Known are its parameters and the quantities of the motion, such as omega_1. If a formula needs pi, pi is added to
+    the parameters.
     """
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}

@@ -57,7 +57,10 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double."""
+    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double.
+
+    A double-double number must have this form before it is used further.
+    """
     total = high + low
     return total, low - (total - high)
 

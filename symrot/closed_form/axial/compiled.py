@@ -230,7 +230,10 @@ _HALF = _turns_of(1, 2)  # half the angle in revolutions, as an integer and its 
 
 
 def _nearest(top: int, bottom: int) -> float:
-    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double."""
+    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double.
+
+    The ratio is an angular velocity or an acceleration.
+    """
     try:
         return top / bottom
     except OverflowError:

@@ -105,9 +105,10 @@ class FreeRigidBody:
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return the components of an angular velocity along the principal axes, as fractions of one denominator.
+        """Return the components of an angular velocity along the principal axes, as three integers and a denominator.
 
-        The result is the list of the three integer numerators, and the common denominator.
+        Each component, rad/s, is one of the integers divided by the denominator. ``omega0`` is given in the body's own
+        axes.
         """
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates

@@ -46,7 +46,10 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles."""
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles.
+
+    The angles in closed forms are such phases, which keep all digits for any number of revolutions.
+    """
 
     rate: tuple[float, float]
     start: tuple[float, float]
@@ -105,7 +108,7 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return three results like those of :meth:`argument`, but for a phase that is not periodic.
+        """Return three results like those of :meth:`argument`, at the times ``t``, for a phase that is not periodic.
 
         The reduced phase is 0, the sign is 1, and the argument is the phase itself.
         """

@@ -116,7 +116,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1 before, 0 near and 1 after resonance, for a motion whose axial rate Omega is ``omega``.
+        """Return -1 before, 0 near and 1 after resonance, at the time when the axial rate Omega equals ``omega``.
 
         If the asymptotic series holds everywhere (large kappa), the result is always 1.
         """
@@ -210,7 +210,10 @@ class Integers:
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write one sample, at a time in s, into row i of ``rates`` and ``attitudes``; skip an array that is None."""
+        """Write the sample at ``time``, s, into row i of ``rates`` (n, 3) and ``attitudes`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = Fraction(time) * self._scale
         angle = self._turn[0] * t + self._turn[1] * t * t
         if rates is not None:

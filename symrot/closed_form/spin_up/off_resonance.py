@@ -151,6 +151,9 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body in ``time`` s, far from resonance, from the rate Omega = ``start`` on."""
+        """Return the rotation of the body in ``time`` s, far from resonance, as a quaternion of fixed-point integers.
+
+        The rotation begins when the axial rate Omega equals ``start``.
+        """
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)
