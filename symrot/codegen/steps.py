@@ -44,7 +44,7 @@ class RungeKutta:
 
     @property
     def formula(self) -> str:
-        """The method in words, for the head comment of its text."""
+        """The method in words, such as its name and order, for the head comment of an emitted step."""
         return f"explicit Runge-Kutta method {self.name} of order {self.order} with {len(self.nodes)} stages"
 
 
@@ -57,7 +57,7 @@ class TaylorSeries:
 
     @property
     def formula(self) -> str:
-        """The method in words, for the head comment of its text."""
+        """The method in words, with its order, for the head comment of an emitted step."""
         return f"Taylor series of the motion up to dt^{self.order}"
 
 
@@ -74,17 +74,17 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the method without derivatives."""
+        """The name of the plain method, without derivatives."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the method."""
+        """The order of the plain method; the derivatives do not change it."""
         return self.plain.order
 
     @property
     def formula(self) -> str:
-        """The method in words, for the head comment of its text."""
+        """The plain method in words, with its derivatives, for the head comment of an emitted step."""
         return f"{self.plain.formula}, and its derivatives by {', '.join(self.by)}"
 
 

@@ -335,7 +335,10 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
 
 
 def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return pairs (sine, cosine) of simple angles: multiples of pi/2 and the angles of the 3-4-5 triangle."""
+    """Return pairs (sine, cosine) as simple values of an angle.
+
+    Its multiples of pi/2, and (3/5, 4/5) and (4/5, 3/5).
+    """
     points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
     return tuple(tuple(map(Fraction, point.split())) for point in points)
 

@@ -126,7 +126,11 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
 
 @dataclass
 class _FormulaCase(Case):
-    """An equation between formulas, possibly complex, under hypotheses that the caller knows to be satisfiable."""
+    """An equation between formulas under decision, with what the stages have proven about it.
+
+    The formulas may be complex. The caller knows that some point satisfies the hypotheses. ``normal_forms`` maps the
+    numbers of entries to the normal forms of left - right.
+    """
 
     normal_forms: dict[int, Expr] = field(default_factory=dict)
 

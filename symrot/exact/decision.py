@@ -177,7 +177,10 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Compute left - right for each entry of an equation and try to prove that it is zero; decide nothing yet."""
+    """Compute left - right for each entry of an equation and try to prove that it is zero.
+
+    The results are stored in ``case``. This stage decides nothing yet, so it returns None.
+    """
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]

@@ -96,7 +96,7 @@ def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
 
 
 def _cleaned(links: list[Link]) -> tuple[Link, ...]:
-    """Return a chain without the expressions that merely repeat the expression before them."""
+    """Return the links of a chain without those whose expression equals the one before."""
     distinct = links[:1]
     for link in links[1:]:
         if link.expression != distinct[-1].expression:
@@ -105,7 +105,7 @@ def _cleaned(links: list[Link]) -> tuple[Link, ...]:
 
 
 def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
-    """Yield the equal expressions that lead from a side, which is not included, to its normal form."""
+    """Yield the links of a chain of equal expressions from ``side`` (not included) to its normal form."""
     angles = {node: value for node, value in _angles(ring, side) if value != node}
     if angles:
         yield Link(side.xreplace(angles), "sums and multiples of angles")

@@ -203,7 +203,10 @@ def equal(a: Fraction, b: Fraction) -> bool:
 
 
 class Angle(NamedTuple):
-    """An angle ``rational + half_turns * pi``, rad. In this form a right angle has an exact sine and cosine."""
+    """An angle ``rational + half_turns * pi`` in rad, where both numbers are fractions.
+
+    In this form 90 degrees is (0, 1/2), with the exact sine 1 and cosine 0.
+    """
 
     rational: Fraction
     half_turns: Fraction
@@ -319,7 +322,7 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the exact value of a NumPy scalar or SymPy number, as an angle in rad."""
+    """Return the value of a NumPy scalar or SymPy number, converted to a double, as an angle in rad."""
     return _from_float(float(value))
 
 

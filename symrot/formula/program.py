@@ -78,7 +78,10 @@ class Program:
             known.add(name)
 
     def operations(self) -> Counter[str]:
-        """Return the numbers of operations in one evaluation, by kind (see :func:`symrot.formula.tree.operations`)."""
+        """Return the number of operations of each kind, such as ``add`` or ``sin``, in one evaluation of all outputs.
+
+        See :func:`symrot.formula.tree.operations`.
+        """
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:

@@ -167,7 +167,10 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 
 
 def blended(node: Node) -> Node:
-    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``."""
+    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``.
+
+    It equals a where p is 1 and b where p is 0, but needs values of both.
+    """
     return chosen(node, {}, names(node))
 
 

@@ -6,7 +6,7 @@ __all__ = ["parameters_file", "parameters_header"]
 
 
 def parameters_file(name: str) -> str:
-    """Return the name of the header with the parameters of a step."""
+    """Return the file name of the C header with the parameters of the step ``name``."""
     return f"{name}_parameters.h"
 
 

@@ -155,7 +155,10 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
-    """Assigns the series of a system to lanes of rows, and their products to columns."""
+    """Assigns the series of a system to lanes of rows, and their products to columns (vectors of four convolutions).
+
+    ``place`` maps each series to its address. A product in at most ``most_uses`` sums is computed inside these sums.
+    """
 
     def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
         self.system, self.series = system, system.series

@@ -128,7 +128,11 @@ class _Builder:
         return self.known[series]
 
     def read(self, node: Node) -> _Linear:
-        """Return a formula as a linear form (a constant plus weighted series); series that do not exist are added."""
+        """Return a formula as a linear form, which is a constant plus weighted series.
+
+        Series of its operations are added if they do not exist. ``2*x*y + 1`` gives the weight 2, the series of x*y,
+        and 1.
+        """
         kind = node[0]
         if kind == "number":
             return _Linear(node, {})
@@ -140,7 +144,10 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of the series that equals a linear form (a constant plus weighted series); add it if new."""
+        """Return the index of the series that equals a linear form (a constant plus weighted series).
+
+        It is added if it does not exist; a single series with weight 1 is that series itself.
+        """
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))

@@ -74,9 +74,9 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 
 
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
-    """Return (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``.
+    """Return (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``, two whole numbers.
 
-    The product ``n * turns`` must be a whole number.
+    So both follow from :func:`doubled_cosine`. The product ``n * turns`` must be a whole number.
     """
     k = int(turns * n)
     return k, n // 2 - k

@@ -40,7 +40,10 @@ class Product:
 
 
 def logarithms_in(expressions: Iterable[Expr]) -> list[Expr]:
-    """Return the outermost logarithms in expressions, also the logarithms that replace inverse hyperbolic functions."""
+    """Return the logarithms in expressions, except those inside other logarithms.
+
+    Inverse hyperbolic functions count as the logarithms that equal them.
+    """
     stack, seen, logarithms = list(expressions), set(), []
     while stack:
         node = stack.pop()

@@ -135,7 +135,10 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
 
 
 def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return the remainder of a polynomial after division by the minimal polynomial of one algebraic number."""
+    """Return the remainder of ``poly`` after division by a minimal polynomial, which ``rule`` represents.
+
+    It is the minimal polynomial of one algebraic number, such as 2 cos(pi/N); other variables count as coefficients.
+    """
     place, power = rule.generator, rule.power
     groups: dict[tuple[int, ...], dict[int, Any]] = {}
     for mono, coefficient in poly.items():

@@ -74,7 +74,10 @@ def as_zero(relation: Any) -> Expr:
 
 
 class NeedsFractions(ArithmeticError):
-    """The exception for a relation whose coefficients are not integers, in a ring over the integers."""
+    """The exception for a relation with fractional coefficients in a ring over the integers.
+
+    The ring is then built again over the rational numbers.
+    """
 
 
 class FormulaRing:
@@ -348,9 +351,9 @@ class FormulaRing:
         return self._without_zeros(poly) if self.numbers and poly else poly
 
     def _without_zeros(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial without terms whose coefficients are proven to be zero.
+        """Return a polynomial without the terms whose coefficients are proven to be zero.
 
-        Such a coefficient is a sum of dependent algebraic numbers.
+        A coefficient here is a sum of algebraic numbers, which may be zero in ways that the relations do not show.
         """
         groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for mono, coefficient in poly.items():
