@@ -229,7 +229,10 @@ class Structure:
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON; two structures are equal if and only if their data are equal."""
+        """Return the structure as data for JSON.
+
+        Two structures are equal if and only if their data are, so the data identify a compiled kernel.
+        """
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

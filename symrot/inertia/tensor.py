@@ -28,7 +28,7 @@ def _items(source: Any) -> tuple[Any, ...]:
 
 
 def matrix(source: Any) -> Tensor:
-    """Return a 3x3 tensor as nested tuples; raise ``ValueError`` if it is not 3x3."""
+    """Return a 3 x 3 tensor, given as a matrix or rows, as nested tuples; raise ``ValueError`` if it is not 3 x 3."""
     rows = tuple(map(vector, _items(source)))
     if len(rows) != 3:
         raise ValueError(f"expected a 3x3 tensor, got {len(rows)} rows")
@@ -67,7 +67,7 @@ def scale(factor: Any, tensor: Any) -> Tensor:
 
 
 def transpose(tensor: Any) -> Tensor:
-    """Return the transpose of a tensor."""
+    """Return the transpose of a tensor, as three rows of three numbers."""
     return matrix(list(zip(*matrix(tensor), strict=True)))
 
 

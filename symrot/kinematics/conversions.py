@@ -160,7 +160,10 @@ def canonical(q: Any) -> Array:
 
 
 def multiply(p: Any, q: Any) -> Array:
-    """Return the Hamilton products ``p q``, shape (..., 4), broadcast together."""
+    """Return the Hamilton products ``p q`` of two arrays of quaternions, shape (..., 4), broadcast together.
+
+    As a rotation, q acts first.
+    """
     p, q = np.broadcast_arrays(array_of(p, 4, what="a quaternion"), array_of(q, 4, what="a quaternion"))
 
     def product(p0: Array, p1: Array, p2: Array, p3: Array, q0: Array, q1: Array, q2: Array, q3: Array) -> Components:

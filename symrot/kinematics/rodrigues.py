@@ -52,7 +52,10 @@ class Projection:
         return ImmutableMatrix([1 - square, *(2 * component for component in p)])
 
     def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
-        """Return the norm of the quaternion :meth:`homogeneous`: a polynomial if modified, a root if classical."""
+        """Return the norm of the quaternion of :meth:`homogeneous`, for the parameters ``values`` (default: symbols).
+
+        It is the polynomial ``1 + p^2`` for modified parameters and the root ``sqrt(1 + p^2)`` for classical ones.
+        """
         base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
         return base ** (exponent / 2)
 

@@ -143,7 +143,10 @@ def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotat
 
 
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the rotation vector of a quaternion, shape (3, 1), rad, of length up to 2 pi (up to pi for q0 >= 0)."""
+    """Return the rotation vector, shape (3, 1), rad, of the unit quaternion q: its length is at most 2 pi.
+
+    It is at most pi if q0 >= 0.
+    """
     axis_and_angle = axis_angle_of_quaternion(q)
     return ImmutableMatrix(axis_and_angle[3] * axis_and_angle[:3, 0])
 
@@ -218,9 +221,9 @@ def _axis_angle_along(frame: str, alpha: Expr) -> tuple[Expr, ImmutableMatrix]:
 
 @cache
 def chart() -> Chart:
-    """Return the chart (attitude description) of rotation vectors v: it describes every attitude.
+    """Return the chart (attitude description) of rotation vectors: it describes every attitude.
 
-    It is singular at \\|v\\| = 2 pi, 4 pi, ...
+    It is singular at the lengths 2 pi, 4 pi, ..
     """
     return Chart(
         name="rotation_vector",

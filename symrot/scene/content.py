@@ -57,7 +57,7 @@ def _scalar_first(rotation: Any, where: str) -> list[float]:
 
 
 def toml_text(content: Content) -> str:
-    """Return the content of a scene as TOML text; numbers keep their exact values."""
+    """Return the content of a scene as TOML text, such as a scene file; numbers keep their exact values."""
     lines: list[str] = []
     _write_table(content, "", lines)
     return "\n".join(lines).strip() + "\n"
