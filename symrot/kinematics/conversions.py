@@ -518,9 +518,9 @@ def _sum(x: Array, y: Array, odd: Mask) -> Array:
 
 
 def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
-    """Return the matrices ``dcm_sb``, shape (..., 3, 3), of Euler angles; see :func:`euler_to_quaternion`.
+    """Return the matrices ``dcm_sb``, shape (..., 3, 3), of Euler angles in order of application.
 
-    ``sequence`` and ``degrees`` are as there.
+    ``sequence`` and ``degrees`` are as for :func:`euler_to_quaternion`.
     """
     return quaternion_to_dcm(euler_to_quaternion(angles, sequence, degrees))
 

@@ -99,7 +99,10 @@ def _quoted(text: str) -> str:
 
 
 def _value(value: Any) -> str:
-    """Return a value as TOML on one line; a fraction becomes exact text, which scenes accept as a number."""
+    """Return a value as TOML on one line, such as ``[1, 2.5]``.
+
+    A fraction becomes text, such as ``"1/3"``, which scenes accept as a number.
+    """
     match value:
         case bool():
             return str(value).lower()
