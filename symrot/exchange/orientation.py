@@ -117,7 +117,7 @@ ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
 
 
 def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw, rad, of a rotation."""
+    """Return roll, pitch and yaw, rad, of a rotation matrix; at gimbal lock (pitch 90 or -90 degrees) roll is 0."""
     m = [[float(entry) for entry in row] for row in rotation]
     across = hypot(m[0][0], m[1][0])
     if across < 1e-12:  # gimbal lock: only the sum or difference of roll and yaw matters
@@ -126,7 +126,7 @@ def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
 
 
 def quaternion_of(rotation: Tensor) -> tuple[float, float, float, float]:
-    """Return the unit quaternion of a rotation, scalar first, with a scalar that is not negative."""
+    """Return the unit quaternion of a rotation matrix, scalar first, with a scalar that is not negative."""
     m = [[float(entry) for entry in row] for row in rotation]
     trace = m[0][0] + m[1][1] + m[2][2]
     squares = [1 + trace, *(1 + 2 * m[k][k] - trace for k in range(3))]  # 4 q_k^2

@@ -58,7 +58,7 @@ def merge(vertices: Floats, triangles: Indices) -> Surface:
 
 
 def _hashes(points: Floats) -> NDArray[np.uint64]:
-    """Return a hash of the coordinates of each point."""
+    """Return a hash of the coordinates of each point, so that equal points can be detected by sorting."""
     bits = points.view(np.uint64)
     mixed = np.zeros(len(points), np.uint64)
     for column, mixer in enumerate(_MIXERS):

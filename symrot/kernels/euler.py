@@ -28,13 +28,14 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 def prefix(sequence: str) -> str:
     """Return the beginning of the names of the kernels for an Euler sequence, such as ``"euler_zxz"``.
 
-    The names for an intrinsic and an extrinsic sequence differ in more than upper and lower case.
+    For an extrinsic sequence, given in lower case, it is ``"euler_extrinsic_zxz"``: the names of files must differ in
+    more than upper and lower case.
     """
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of Euler angles, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of Euler angles: the function derives its arguments and formulas."""
     for sequence in SEQUENCES:
         for suffix, make in _KINDS.items():
             name = f"{prefix(sequence)}_{suffix}"

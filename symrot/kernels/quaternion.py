@@ -33,7 +33,7 @@ _UNIT = "unit quaternions"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of quaternions, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of quaternions: the function derives its arguments and formulas."""
     for name, make in _KINDS.items():
         yield name, partial(make, name)
 

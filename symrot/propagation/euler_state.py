@@ -278,7 +278,7 @@ class EulerMotion(Motion):
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7).
 
-        Components of omega that are constant by the plan are left out of the result.
+        There are fewer columns if the plan leaves out components of omega because they are constant.
         """
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 

@@ -257,7 +257,10 @@ class Motion(ABC):
 
     @property
     def tolerance(self) -> float:
-        """Error of the trajectory to aim for."""
+        """Error of the trajectory to aim for.
+
+        It is in rad for the attitude, and relative to its size for the angular velocity.
+        """
         return self.setup.tolerance
 
     @property

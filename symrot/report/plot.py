@@ -67,7 +67,10 @@ def dense(trajectory: Any) -> Any:
 
 
 def _fastest(trajectory: Any) -> float:
-    """Return an upper estimate of the fastest rate in a motion, rad/s: rotation plus the nutation due to rotors."""
+    """Return an upper estimate of the fastest rate of rotation in a motion, rad/s.
+
+    It is the largest angular velocity, plus the rate of the nutation that rotors cause.
+    """
     moments = [float(moment) for moment in trajectory.scene.body.principal.moments]
     rotor = float(np.linalg.norm(_rotor(trajectory.scene)))
     return float(np.max(np.linalg.norm(trajectory.omega, axis=1))) + rotor / (min(moments) or max(moments))
@@ -311,7 +314,10 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure of the samples of a motion: all its panels on one page."""
+    """Return a matplotlib Figure with all panels of a motion on one page, drawn from the samples of ``trajectory``.
+
+    ``tolerance`` is that of the integration, a line in the panel of the conserved quantities.
+    """
     from matplotlib.figure import Figure
 
     names = [name for name in OVER_TIME if name not in _left_out(trajectory)]

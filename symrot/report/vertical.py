@@ -81,6 +81,6 @@ def _unit(vector: list[float]) -> Floats:
 
 
 def _angle(first: Floats, second: Floats) -> Floats:
-    """Return the angles between unit vectors, rad, accurate for small angles too."""
+    """Return the angles between the unit vectors ``first[i]`` and ``second[i]``, rad, accurate for small angles too."""
     angles: Floats = np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), np.sum(first * second, axis=1))
     return angles

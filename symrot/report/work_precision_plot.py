@@ -22,7 +22,7 @@ OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
-    """The style of a method's curve: colour, marker and dash."""
+    """How a method's curve is drawn in every figure: its colour, marker and dash pattern of matplotlib."""
 
     colour: str
     marker: str

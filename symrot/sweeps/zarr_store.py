@@ -75,7 +75,10 @@ class ZarrStore:
         return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:
-        """Create all arrays, still without values, in a new folder that gets its final name when it is complete."""
+        """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package.
+
+        The folder gets its final name when it is complete.
+        """
         part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
         shutil.rmtree(part, ignore_errors=True)
         try:
@@ -134,7 +137,7 @@ class ZarrStore:
 
     @property
     def finished(self) -> bool:
-        """Whether statistics were written already."""
+        """Whether the statistics of the sweep are stored, which happens once, after its last chunk."""
         return bool(self._group.attrs.get(FINISHED, False))
 
     @property

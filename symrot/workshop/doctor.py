@@ -117,7 +117,10 @@ class DoctorReport(TypedDict):
 
 
 def facts() -> DoctorReport:
-    """Return the state of this installation as data for JSON; ``problems`` lists causes of failure or slowness."""
+    """Return the state of this installation as data for JSON: versions, extras, compiler, cache.
+
+    ``problems`` lists, one sentence each, causes of failure or slowness; it is empty if all is well.
+    """
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
@@ -169,7 +172,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return lines of text about the state of this installation, from the data of :func:`facts`."""
+    """Return the lines that `symrot doctor` prints; ``report`` is the data of :func:`facts`."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"

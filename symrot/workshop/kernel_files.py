@@ -203,9 +203,10 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the library and the kernels of all shipped scenes, and return the paths of the changed files.
+    """Write the files of all library kernels and of the kernels of all shipped scenes; return the changed paths.
 
-    Files of kernels that no longer exist are deleted.
+    ``targets`` are the languages, such as ``"c"``, each with a subfolder of ``directory``. Files of kernels that no
+    longer exist are deleted.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
@@ -217,7 +218,9 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
-    """Return a unified diff between the kernels on disk and newly emitted ones; an empty list if they are equal.
+    """Return the lines of a unified diff between the kernels in a folder and newly emitted ones; empty if equal.
+
+    ``targets`` are the languages to compare, such as ``"c"``.
 
     Raises
     ------

@@ -122,7 +122,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of the library, which has its own box and its own bounds."""
+    """The texts of a kernel of the library, which has its own box of inputs and bounds of rounding errors on it."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 

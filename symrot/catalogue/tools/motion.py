@@ -27,7 +27,7 @@ def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
 
 
 def attitude_rates() -> dict[Symbol, Expr]:
-    """Return a map from the quaternion components q0 to q3 to their rates, for the angular velocity ``OMEGA``."""
+    """Return a map from the quaternion components q0 to q3 to their rates, for the body rates ``OMEGA``."""
     return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
 
 

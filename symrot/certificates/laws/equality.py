@@ -84,7 +84,10 @@ class _AtomField(FractionField):
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials; function values such as ``sin(x)`` become atoms."""
+    """A converter of SymPy formulas to fractions of polynomials; a function value such as ``sin(x)`` becomes an atom.
+
+    An atom is a symbol that stands for that value.
+    """
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions

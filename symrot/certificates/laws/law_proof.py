@@ -79,14 +79,14 @@ class UndecidedChoice(Exception):
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, x, whose sine is a variable.
 
     The arguments are the monomial (here x) and the coefficient (here 1/2) of a smaller base angle that would do.
     """
 
 
 class OutOfGenerators(Exception):
-    """Raised if a proof needs more generators than the polynomial ring has."""
+    """Raised if a proof needs more generators, variables for function values, than the polynomial ring has."""
 
 
 @dataclass
@@ -290,7 +290,10 @@ class LawProver(FormulaReader):
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle modulo 2 pi; for an angle wrapped to [-pi, pi], return the angle before wrapping."""
+        """Return an angle as a fraction of polynomials, up to multiples of 2 pi.
+
+        For an angle that the formula wraps to [-pi, pi], that is the angle before wrapping.
+        """
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
         if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):

@@ -47,7 +47,11 @@ class _Scope:
 
 
 class _BodyReader:
-    """A reader of the body of a C function, which turns statements into a graph of rounded operations."""
+    """A reader of the body of a C function, which turns statements into a graph of rounded operations.
+
+    Its methods take ``cursor``, the place of the next token, and ``scope``, the known names, and return nodes: indices
+    of operations in the graph.
+    """
 
     def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
@@ -261,7 +265,10 @@ class _BodyReader:
 
 
 def _nearest_float(digits: str, value: float) -> float:
-    """Return the float nearest to decimal text; rounding it to a double first could give the neighbouring float."""
+    """Return the float nearest to the decimal text ``digits``, of which ``value`` is the nearest double.
+
+    Rounding the double again could give the neighbouring float.
+    """
     if digits.lower().startswith("0x"):
         return float(unpack("f", pack("f", value))[0])
     exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
@@ -380,7 +387,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of a loop over samples from ``start`` to ``end``; return the tokens of the loop's body."""
+    """Read the head of a loop over the samples from ``start`` to ``end``, two names; return the tokens of its body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -407,7 +414,7 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the block's end."""
+    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the end of a block."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 

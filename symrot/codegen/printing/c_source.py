@@ -278,7 +278,10 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function that <math.h> lacks, such as sinc, for batches: it contains no branches."""
+    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batches.
+
+    It computes both of its formulas and selects one of the results by their bits, so that compilers can vectorise it.
+    """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -341,7 +344,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
 
 
 def _blocks(size: str) -> list[str]:
-    """Return the first C lines of a loop over blocks of ``size`` samples."""
+    """Return the first C lines of a loop over a batch in blocks of ``size`` samples, from ``start`` to ``end``."""
     return [
         f"    for (size_t start = 0; start < n; start += {size}) {{",
         f"        const size_t end = n - start < {size} ? n : start + {size};",

@@ -151,7 +151,10 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return (constant, series) whose product equals a linear form; proportional linear forms share one series."""
+        """Return (constant, series) whose product equals a linear form (a constant plus weighted series).
+
+        Proportional linear forms, such as ``2*u + 4*v`` and ``u + 2*v``, share one series, which is added if new.
+        """
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -174,7 +177,7 @@ class _Builder:
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return the sum or difference of two linear forms (a constant plus weighted series).
+        """Return ``left + sign*right`` for two linear forms (a constant plus weighted series), with ``sign`` 1 or -1.
 
         A sum in brackets that may become zero during the motion is not expanded; see :meth:`bracket`.
         """
@@ -220,7 +223,10 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v in terms of sech if v is a product of hyperbolic cosines, which could overflow; otherwise None."""
+        """Return 1/v as a linear form if v, the series ``number``, is a product of hyperbolic cosines; otherwise None.
+
+        It is computed from functions sech, because the hyperbolic cosines could overflow.
+        """
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
@@ -323,7 +329,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return ``1 + sign*u^2`` for a series u, as a linear form."""
+        """Return ``1 + sign*u^2`` as a linear form, where u is the series with index ``series``."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:

@@ -67,7 +67,10 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the Taylor recurrences of a right-hand side; raise InputError if order or blocks cannot be used."""
+    """Return the Taylor recurrences of the right-hand side ``program``.
+
+    Raise InputError if the order or the blocks cannot be used. The arguments are those of :func:`taylor_definitions`.
+    """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
     system = recurrences(program)
@@ -131,7 +134,10 @@ class _Jet:
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that collects the newest coefficients of a pack from the rows of its four series."""
+        """Return the C expression of the newest coefficients of a pack, collected from the variables of rows.
+
+        Row i has the variable ``r{i}``; the four series of a pack may lie in several rows.
+        """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -260,7 +266,11 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements for coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``; u may be 1."""
+        """Return the C statements that set ``name`` to coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``.
+
+        ``terms`` holds the C expressions of v and, unless u is constant, of u; ``total`` is that of the sum of known
+        products.
+        """
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -272,7 +282,10 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression, with calls of the C library, for coefficient 0 of four functions such as exp."""
+        """Return the C expression for coefficient 0 of the four functions in a row, such as exp.
+
+        It calls the C library for each lane.
+        """
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -339,7 +352,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient n of all series and coefficient n + 1 of the states."""
+        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
+
+        ``phase`` and ``sums`` are explained in the class and in :meth:`column`.
+        """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 

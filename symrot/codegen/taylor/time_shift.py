@@ -224,9 +224,10 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of t^0, t^1, .. of the result of an operation, or None if it is not a polynomial in t.
+    """Return the result of an operation as a polynomial in t: its coefficients, lowest power first.
 
-    ``parts`` holds the coefficients of each operand, or None for an operand that is not a polynomial in t.
+    Return None if it is not a polynomial. ``parts`` holds the coefficients of each operand, or None for an operand that
+    is not a polynomial in t.
     """
     if any(part is None for part in parts):
         return None

@@ -47,8 +47,8 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 def split_radicands(ring: FormulaRing) -> list[Expr]:
     """Return the radicands that proofs assume to be nonnegative, although the formulas may be real without this.
 
-    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``. Where f is zero and P is negative, the first is 0, but the
-    second is not real.
+    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, and P is in the result. Where f is zero and P is negative,
+    the first is 0, but the second is not real.
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
@@ -57,8 +57,9 @@ def split_radicands(ring: FormulaRing) -> list[Expr]:
 def is_dense(ring: FormulaRing) -> bool:
     """Return whether the points at which no divisor is zero are known to be dense among all real points.
 
-    They are dense for formulas in the decidable scope, but maybe not if roots occur, or numbers that are not algebraic,
-    or angles and exponents that may depend on each other, as ``x log(4)`` and ``x log(2)`` do.
+    Then an equation that is proven there is not vacuous. They are dense for formulas in the decidable scope, but maybe
+    not if roots occur, or numbers that are not algebraic, or angles and exponents that may depend on each other, as ``x
+    log(4)`` and ``x log(2)`` do.
     """
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 

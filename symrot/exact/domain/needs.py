@@ -113,7 +113,7 @@ def _needs(node: Expr) -> Iterator[Need]:
 def _granted(need: Need) -> bool:
     """Return whether a condition needs no proof, because it follows from SymPy's assumptions on the symbols.
 
-    For a formula without symbols, the result can be True only if the formula is a rational number.
+    For a number such as ``sqrt(2) - 1``, SymPy's own numerical answer is not trusted, unless the number is rational.
     """
     formula = need.formula
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
@@ -123,7 +123,10 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every subexpression of formulas once, without recursion; the inside of symbols is skipped."""
+    """Yield every subexpression of formulas once, without recursion.
+
+    A function of time or another free number (:func:`is_leaf`) is not split.
+    """
     stack, seen = list(formulas), set()
     while stack:
         node = stack.pop()

@@ -32,7 +32,7 @@ Row = list[float]
 
 
 class EquationSystem:
-    """Equations ``formula = 0`` in several unknowns. Newton's method solves them; a box proves that a solution exists.
+    """Equations ``formula = 0`` in several unknowns, with Newton's method and with a proof that a solution exists.
 
     Parameters
     ----------

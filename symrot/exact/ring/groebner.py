@@ -117,7 +117,10 @@ class _Basis:
         return total
 
     def subtract(self, total: Terms, terms: Terms, shift: Monomial, times: Any) -> None:
-        """Subtract ``times * shift`` times a polynomial (``terms``) from the polynomial ``total``, in place."""
+        """Subtract a multiple of the polynomial ``terms`` from the polynomial ``total``, in place.
+
+        The multiple is the number ``times``, times the monomial ``shift``.
+        """
         self.spend(len(terms))
         zero = self.ring.domain.zero
         for mono, coefficient in terms.items():

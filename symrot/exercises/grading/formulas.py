@@ -197,7 +197,7 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
 
 
 def _letters(formula: str, question: Question) -> set[str]:
-    """Return the names of symbols of the exercise that occur in a formula."""
+    """Return the names of those symbols of the exercise ``question`` that occur in ``formula``."""
     return {name for name in _NAME.findall(formula) if name in question.symbols}
 
 

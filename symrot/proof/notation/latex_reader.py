@@ -34,7 +34,10 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Exception raised if LaTeX text contains a name without a meaning, or a notation that is not supported."""
+    """Raised if LaTeX on a page has a name without a declared meaning, or a notation that is not supported.
+
+    The LaTeX is then only a label: nothing is proven about it.
+    """
 
 
 def key(latex: str) -> str:

@@ -108,7 +108,7 @@ class ZerosNotSeparated(PropagationError):
     def later(self, epoch: float) -> "ZerosNotSeparated":
         """Return the error with its time converted from the clock of the motion to time of the scene.
 
-        The clock shows 0 at the scene time ``epoch``, s.
+        The clock, the time that the stepper counts, shows 0 at the scene time ``epoch``, s.
         """
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros

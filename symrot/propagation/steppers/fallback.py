@@ -289,7 +289,10 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at the times, which all lie after t0 or all before it, sorted by their distance from t0."""
+        """Return the states at the times, shape (n, N).
+
+        The times all lie after t0 or all before it, and are sorted by their distance from t0.
+        """
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0

@@ -141,7 +141,8 @@ class SwitchedRun(RunState):
     def _check_start(self) -> None:
         """Raise IntegrationStopped if the start allows two motions.
 
-        This is so if the argument of a switching function is zero at the start and may become positive or negative.
+        This is so if the argument of a function such as sign is zero at the start, and if it becomes positive with sign
+        = 1 and negative with sign = -1.
         """
         for switch in self.system.switches:
             mode = switch.mode
@@ -496,10 +497,10 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Switch a function (sign, floor, ..) whose guard has become zero: change its mode, the value in the formulas.
+        """Switch the function (sign, floor, ..) whose guard has become zero: change its mode, its value in formulas.
 
         If the rates before and after the change both drive the argument of a sign back to zero, it is held at zero: the
-        motion slides.
+        motion slides. IntegrationStopped is raised if the motion cannot go on in exactly one way.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
@@ -584,13 +585,17 @@ class SwitchedRun(RunState):
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``."""
+        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``.
+
+        An example is the sign in ``where(omega_1 > 0, sign(omega_2), 0)`` while omega_1 < 0.
+        """
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
         """Compute a switching function such as sign(x) again, as the branch of ``where`` that contains it is used now.
 
-        While the branch was unused, nobody watched whether x changed its sign.
+        ``mode`` names the number that replaces the function in the formulas. While the branch was unused, nobody
+        watched whether x changed its sign. If x has no value now, the number is left as it is.
         """
         try:
             guard = self._guard_value(mode)

@@ -170,7 +170,10 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return factors side by side as LaTeX; ``alone`` says that the product has no other factors or fractions."""
+        """Return factors side by side as LaTeX; ``alone`` is true if the product has no other factors or fractions.
+
+        Then a single factor needs no brackets.
+        """
         alone = alone and len(factors) == 1
         written = ""
         after_function = False
