@@ -110,18 +110,21 @@ class Evaluator:
         self.constants, self.cases, self.near = dict(constants), cases, set()
 
     def parsed(self, text):
-        """Return the syntax tree of an expression; its decimal numbers are strings there, so that they stay exact."""
+        """Return the syntax tree of the formula or C expression ``text``.
+
+        Its decimal numbers are strings there, so that they stay exact.
+        """
         require(
             text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
         )
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression given as text."""
+        """Return the value of the formula or C expression ``text``; variables have the values in ``names``."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression given as a syntax tree."""
+        """Return the value of an expression given as a syntax tree, ``node``, as :meth:`parsed` returns it."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)

@@ -48,7 +48,7 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that reports a failure of this function, for doubles or floats."""
+        """Return the sentence that reports a failure of this function; ``suffix`` is "" for doubles, "f" for floats."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (

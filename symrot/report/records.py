@@ -45,7 +45,7 @@ class InitialRecord(TypedDict):
 
 
 class SpanRecord(TypedDict):
-    """The time span of a run: start and end (s) as exact text, and the number of samples."""
+    """The time span of a run: first and last time (s) as exact text, and the number of samples."""
 
     start: str
     stop: str
@@ -197,7 +197,7 @@ class OperationsRecord(TypedDict):
 
 
 class NamedScene(TypedDict):
-    """The name of the scene to which an explained plan belongs."""
+    """The scene to which the report of `symrot explain` belongs: name, title and source."""
 
     name: str
     title: str
@@ -242,7 +242,7 @@ class EventRecord(TypedDict):
 
 
 class FileRecord(TypedDict):
-    """The description at the beginning of a file of samples."""
+    """The description at the head of a file of samples; it says what each array is and how the motion was computed."""
 
     symrot: str
     scene: str

@@ -155,7 +155,8 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
     """Draw level curves of ``value``, a function of direction, on the near side of the sphere.
 
-    Return False, and draw nothing, if the function is constant.
+    Return whether curves were drawn: False if the function is constant. ``view`` is explained at :func:`_eye`;
+    ``window`` is the part that is drawn.
     """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)

@@ -322,7 +322,7 @@ def proofs(data: Data) -> tuple[str, ...]:
 
 
 def _emitted(path: str) -> str:
-    """Return the name of the kernel or shipped scene to which a C file or certificate belongs.
+    """Return the name of the kernel or shipped scene to which the C file or certificate at ``path`` belongs.
 
     Raise InputError or CertificateError unless the file is exactly as symrot emits it.
     """

@@ -42,7 +42,7 @@ SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernel
 
 
 def kernel_lines() -> list[str]:
-    """Return one line for each kernel of the library, with its name and its title."""
+    """Return the lines that `symrot emit --list` prints: the name and the title of each kernel of the library."""
     width = max(map(len, kernel_names()))
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 

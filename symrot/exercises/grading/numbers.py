@@ -95,7 +95,7 @@ def _readings(answer: str) -> Iterator[_Number]:
 def _read(text: str) -> _Number | None:
     """Return the number and unit in a text such as ``0.5 kg m^2``.
 
-    Return None if the text is not a number, or a number followed by a unit.
+    Return None if the text has another form; the unit may be missing.
     """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")
