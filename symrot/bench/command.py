@@ -19,7 +19,7 @@ Progress = Callable[[str], object]
 
 
 class ModeReport(NamedTuple):
-    """The result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
+    """What a mode of ``symrot bench`` returns: data for JSON, lines of text (first the title), and success or not."""
 
     data: Any
     lines: Sequence[str]

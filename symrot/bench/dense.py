@@ -33,14 +33,17 @@ PEERS = (1e-9, 1e-12, 2.0**-52)
 
 
 class Sampled(NamedTuple):
-    """One contestant at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
+    """One program at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
 
     measured: Measured
     apart: float
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's two methods of sampling a motion, by name; an empty dict if heyoka is not installed."""
+    """Return heyoka's two methods of sampling a motion at ``times``, as functions that return the samples, by name.
+
+    The dict is empty if heyoka is not installed.
+    """
     try:
         import heyoka
     except ImportError:

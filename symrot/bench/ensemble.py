@@ -45,13 +45,20 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of the end states of an ensemble, shape (n, N)."""
+        """Return the largest error of the end states of an ensemble, one row for each trajectory.
+
+        Only the first trajectories have an exact end state and are compared.
+        """
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of n initial states near a motion's initial state, which is the first of them."""
+    """Return an ensemble of ``n`` initial states near a motion's initial state, which is the first of them.
+
+    ``name`` is the motion, ``problem`` its equations, and ``stop`` the end time, s. The other initial states are
+    random.
+    """
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -62,7 +69,10 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return reference end states of trajectories from the initial states ``y``, computed by heyoka in long double."""
+    """Return the end states at the time ``stop`` of trajectories from the initial states ``y``, as a reference.
+
+    They are computed by heyoka in long double.
+    """
     import heyoka
 
     real = np.longdouble
@@ -77,7 +87,10 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
 
 
 def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
-    """Return the right-hand side of a motion in heyoka's form; ``real`` converts its numbers."""
+    """Return the right-hand side dy/dt of a motion in heyoka's form, with its constants as numbers.
+
+    ``real`` converts the numbers, for example to long double.
+    """
     import heyoka
 
     names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
@@ -210,7 +223,7 @@ def _print_table(runs: list[Run], n: int) -> None:
 
 
 def _print_widths(start: Start, rounds: int) -> None:
-    """Print a comparison of SIMD vectors of four and of eight trajectories."""
+    """Print the times of the ensemble ``start`` with SIMD vectors of four and of eight trajectories, for comparison."""
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip

@@ -77,7 +77,10 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return random inputs in a kernel's bounds, one array (size, count) per argument; quaternions have unit norm."""
+    """Return ``count`` random inputs within a kernel's bounds, one array (size, count) per argument.
+
+    Quaternions have unit norm.
+    """
     kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
     for argument in kernel.inputs:
@@ -111,7 +114,10 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return the addresses of the arguments of a kernel in the shared memory."""
+    """Return the addresses of the arguments of the kernel ``name`` in the memory that all contestants share.
+
+    The other arguments are those of :func:`_block`, which reserves this memory.
+    """
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -182,7 +188,7 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C functions that repeat heyoka's compiled functions, for one sample and for batches."""
+    """Return C functions that call heyoka's compiled functions many times, for one sample and for batches."""
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
@@ -200,7 +206,10 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum."""
+    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum.
+
+    Its time shows how long the memory access of a kernel takes.
+    """
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -213,7 +222,10 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function that calls ``run(repeats, place)`` with enough repeats, and returns its time per sample, s."""
+    """Return a function that calls ``run(repeats, place)`` long enough for the clock; it returns s per sample.
+
+    Its argument ``place`` is the number of the block of memory; one call of ``run`` handles ``samples`` samples.
+    """
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
@@ -277,9 +289,9 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for a kernel (one per tool, symrot first), and the names of the missing tools.
+    """Return the contestants for the kernel ``name`` (one per tool, symrot first), and the names of the missing tools.
 
-    Raise AssertionError if the outputs of two tools differ.
+    ``many`` is the number of samples in the largest batch. Raise AssertionError if the outputs of two tools differ.
     """
     contestants: list[Contestant] = []
     missing: list[str] = []
@@ -321,7 +333,10 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions and outputs for CasADi's own evaluation, which maps a function over the samples."""
+    """Return the timing functions of CasADi's own evaluation, which maps a function over samples, and its outputs.
+
+    ``function`` is CasADi's function for the kernel ``name``. Only the batch that fits in the cache is timed.
+    """
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -333,7 +348,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
 
 
 def _casadi_text(name: str, function: Any) -> str:
-    """Return CasADi's C code for a kernel, and a C function with the kernel's own arguments that calls it."""
+    """Return the C code that CasADi generates for a kernel, and a C function with symrot's arguments that calls it."""
     import casadi
 
     generator = casadi.CodeGenerator("peer", {"with_header": False})
@@ -393,8 +408,9 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return, for each shape of input, the ratio of symrot's time to the time of the best other tool.
 
-    The least times are compared, except for batches of many samples: their speed is limited by memory, which other
-    processes use too. There the ratio to each other tool is computed in each round; the result is the largest median.
+    The first contestant is symrot. The least times are compared, except for batches of many samples: their speed is
+    limited by memory, which other processes use too. There the ratio to each other tool is computed in each round; the
+    result is the largest median.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
@@ -409,7 +425,7 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the table of a kernel as lines: its contestants, and symrot's ratios to the best other tool."""
+    """Return the table of the kernel ``name`` as lines: its contestants, and symrot's ratios to the best other tool."""
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
     lines = [
@@ -428,7 +444,10 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cases in which symrot needs more operations than the best tool, or more than 1.05 times its time."""
+    """Return, as texts, where symrot needs more operations than the best tool, or more than 1.05 times its time.
+
+    The list is empty if there are none.
+    """
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over

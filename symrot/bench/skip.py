@@ -50,7 +50,10 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the compared motions, the most general first, as a map from name to (description, scene)."""
+    """Return the motions for which a general and a special kernel are compared, the most general motion first.
+
+    The map has (description, scene) for each name.
+    """
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -59,7 +62,7 @@ def rungs() -> dict[str, tuple[str, Scene]]:
 
 
 def _nothing(kind: str) -> Torque:
-    """Return a torque of the given kind whose constants make it zero."""
+    """Return a torque of the given kind, such as ``damping``, whose constants make it zero."""
     zeros: dict[str, Any] = {
         "scalar": Fraction(0), "vector": (Fraction(0),) * 3, "scalar or vector": (Fraction(0),) * 3,
         "attitude": (Fraction(1), *(Fraction(0),) * 3),
@@ -69,7 +72,11 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene without any simplification, with zero torques of all kinds that the scene lacks."""
+    """Return the plan of a scene that assumes nothing about it, with zero torques of all kinds that the scene lacks.
+
+    A plan says which equations are computed. The kernel of this one is compared with the kernel of the scene's own
+    plan.
+    """
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
@@ -106,7 +113,10 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and the functions that must be timed to complete it, by name."""
+    """Return a row of the table without its times, and the functions that must be timed to complete it, by column.
+
+    ``about`` is the description of the motion.
+    """
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -147,7 +157,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of savings as lines of text; the first is the title."""
+    """Return the table of the ``results`` of :func:`measure` as lines of text; the first is the title."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

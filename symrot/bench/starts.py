@@ -106,7 +106,7 @@ VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momen
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
-    """Return the median processor time of a function, in microseconds."""
+    """Return the median processor time of ``run`` over ``rounds`` calls, in microseconds."""
     times = []
     for _ in range(rounds):
         began = process_time_ns()
@@ -116,7 +116,7 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return an angular velocity and a quaternion near the initial state of a scene."""
+    """Return an angular velocity and a quaternion that differ a little from the initial state of a scene."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
@@ -139,7 +139,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 class _Row(NamedTuple):
-    """A row of the first table: microseconds of calls with another omega, with another attitude, and with both."""
+    """A row of the first table: microseconds of calls with a new omega, a new attitude, or both, and their parts."""
 
     parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
     motion: float  # the motion itself, with both changed
@@ -227,9 +227,10 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a body driven about its symmetry axis.
+    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis.
 
-    Time for the table of Taylor polynomials is included only if samples near resonance need this table.
+    ``source`` is the closed form of this motion. Time for its table of Taylor polynomials is included only if samples
+    near resonance need this table.
     """
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)

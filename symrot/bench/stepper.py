@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 
 
 class Measurement(NamedTuple):
-    """The result of one contestant: evaluations of the rates, seconds of each round, largest error at the end."""
+    """The result of one stepper: evaluations of the rates, seconds of each round, largest error at the end."""
 
     name: str
     evaluations: int

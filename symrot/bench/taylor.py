@@ -82,7 +82,7 @@ REFERENCES = Path(__file__).with_name("taylor.toml")
 
 
 class Run(NamedTuple):
-    """One contestant at one tolerance: steps, error of the last state, seconds of each round."""
+    """One stepper at one tolerance: steps, error of the last state, seconds of each round."""
 
     name: str
     tolerance: float
@@ -127,14 +127,17 @@ class SteppedProblem(Problem):
 
 
 def scene(name: str) -> Scene:
-    """Return one of the motions of :data:`MOTIONS` as a scene."""
+    """Return the motion ``name`` of :data:`MOTIONS` as a scene."""
     form = {"schema": 1, "title": name, "output": {"quantities": ["omega", "quaternion"]}, **MOTIONS[name]}
     form["span"] = {**form["span"], "samples": 2}
     return Scene.from_dict(form, name)
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the exact last state of a motion, from :data:`REFERENCES` if ``scale`` is 1, otherwise computed now."""
+    """Return the exact last state of the motion ``name`` over ``scale`` times its span.
+
+    It is read from :data:`REFERENCES` if ``scale`` is 1, otherwise computed now.
+    """
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
         np.array([float(value) for value in stored])
@@ -144,7 +147,10 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
-    """Return a motion's last state by Taylor series in 40 digits, computed from the kernel's rounded parameters."""
+    """Return the last state of the motion ``name`` over ``scale`` times its span, by Taylor series in 40 digits.
+
+    It is computed from the rounded parameters that all contestants use.
+    """
     import mpmath
 
     problem = SteppedProblem(name, scale)
@@ -223,7 +229,10 @@ def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) ->
 
 
 def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
-    """Return (name, steps, function) for handwritten loops with several numbers of steps."""
+    """Return (name, steps, function) for each loop that was written by hand in C, with several numbers of steps.
+
+    The function runs the loop over the motion and returns its steps and last state.
+    """
     text = "\n".join(
         (
             problem.kernel.source,
@@ -344,7 +353,7 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 
 def _print_orders(name: str, rounds: int) -> None:
-    """Print a comparison of orders of the series: the least time for each power of ten of the error."""
+    """Print, for a motion, the least time of each order of the series for each power of ten of the error."""
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [

@@ -61,7 +61,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Measured:
-    """The largest error of a function in one form, and the argument where it occurs."""
+    """The largest error of a function in one form (one sample or batch), and the argument where it occurs."""
 
     name: str
     real: str
@@ -80,7 +80,7 @@ def _quotient(name: str) -> Callable[[Any], Any]:
 
 
 def _series(name: str, x: Any) -> Any:
-    """Return the exact value of a function with a removable singularity, near zero by its series."""
+    """Return the exact value at ``x`` of the function ``name`` with a removable singularity, by its series near 0."""
     import mpmath
 
     which = REMOVABLE[name]
@@ -162,7 +162,7 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 
 
 def _directions(real: Real, count: int, kind: Any) -> Floats:
-    """Return test arguments y and x of the arc tangent, as two rows.
+    """Return ``count`` test arguments y and x of the arc tangent, as two rows of numbers of the type ``kind``.
 
     The points are unit vectors in all directions, vectors of all magnitudes and ratios, and points near the lines y =
     x/2, y = x and y = 2 x.
@@ -197,7 +197,10 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the error in units in the last place of the exact value; if x is not 0, in units of roundoff/x^2."""
+    """Return the error of ``computed`` in units in the last place of the exact value; if x is not 0, of roundoff/x^2.
+
+    ``real`` is the precision, double or float.
+    """
     digits, least = DIGITS[real.precision]
     if x:
         return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))

@@ -105,7 +105,7 @@ def compiler() -> Compiler:
 
 
 def missing() -> str:
-    """Return a sentence that says why there is no C compiler, or an empty text if there is one."""
+    """Return the sentence that says why no C compiler can be used, or an empty text if there is one."""
     try:
         compiler()
     except CompilerError as error:
@@ -149,7 +149,10 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
 
 
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
-    """Return the path that :func:`build` would return if the cache contains the library, otherwise None."""
+    """Return the path of the library if the cache contains it, otherwise None; nothing is compiled.
+
+    The arguments are those of :func:`build`.
+    """
     entry = _entry(compiler(), source, name, flags)
     for directory in _directories():
         if (library := _sound_library(directory, entry, name)) is not None:
@@ -296,7 +299,10 @@ def _identity(path: str, arguments: tuple[str, ...]) -> str:
 
 @cache_once
 def _processor() -> str:
-    """Return a text that identifies the processor for ``-march=native``: family, model and features."""
+    """Return a text that identifies this computer's processor: family, model and features.
+
+    It is a part of cache keys, since code compiled with ``-march=native`` may not run on another processor.
+    """
     try:
         with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]

@@ -174,10 +174,10 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _compared(data: Data) -> list[str]:
-    """Return a list of one sentence, which says that the certificate's verdicts on object code were not checked.
+    """Return a list of one sentence, which says that the verdicts on object code in a certificate were not checked.
 
-    The list is empty if the certificate has no verdicts on object code. A verdict holds only for the machine where
-    it was made.
+    The list is empty if the certificate ``data`` has no such verdicts. A verdict holds only for the machine where it
+    was made.
     """
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []

@@ -258,7 +258,7 @@ def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
 
 
 def intended_text(constant: IntendedConstant) -> str:
-    """Return, as text such as ``"1/3"``, the exact number for which a rounded constant of the C text stands."""
+    """Return the exact number for which a rounded constant of the C text stands: ``"1/3"`` or ``"1/2*pi"``."""
     return f"{constant.fraction}*pi" if constant.times_pi else str(constant.fraction)
 
 

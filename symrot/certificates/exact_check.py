@@ -110,18 +110,21 @@ class Evaluator:
         self.constants, self.cases, self.near = dict(constants), cases, set()
 
     def parsed(self, text):
-        """Return the syntax tree of an expression; its decimal numbers are strings there, so that they stay exact."""
+        """Return the syntax tree of the formula or C expression ``text``.
+
+        Its decimal numbers are strings there, so that they stay exact.
+        """
         require(
             text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
         )
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of an expression given as text."""
+        """Return the value of the formula or C expression ``text``; variables have the values in ``names``."""
         return self.value(self.parsed(text))
 
     def value(self, node):
-        """Return the value of an expression given as a syntax tree."""
+        """Return the value of an expression given as a syntax tree, ``node``, as :meth:`parsed` returns it."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -197,7 +200,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that a C function, in its versions for one sample and for many (``_batch``), computes its formulas."""
+    """The check that a C function computes its formulas, in its versions for one sample and for many (``_batch``)."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
@@ -468,7 +471,10 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return a map from the name of each function in a C text to the tuple (static, type, arguments, body)."""
+    """Return the functions in a C text, by name: tuples (is it static, type, arguments, body).
+
+    ``name`` is the kernel and ``files`` the certified files, which decide the includes that the text may have.
+    """
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]

@@ -144,7 +144,7 @@ _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll
 
 @dataclass(frozen=True)
 class FlagRemark:
-    """A remark about a compiler flag that is set or missing: its ``effect`` on the certificate, and the reason."""
+    """A remark about one compiler flag that is set or missing: what then holds, ``effect``, and the reason."""
 
     flag: str
     effect: str
@@ -254,7 +254,10 @@ def _check_file(word: str) -> None:
 
 
 def _rule(flag: str) -> FlagRule:
-    """Return the table's rule for a compiler flag; raise InputError if the flag is not in the table."""
+    """Return the rule for a compiler flag: which properties of the code it changes.
+
+    InputError is raised for a flag that is not in the table.
+    """
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule

@@ -92,7 +92,7 @@ def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law,
 
 
 class _ConstantsByName(dict[str, Symbol]):
-    """A dictionary that returns, for any name, the symbol of the physical constant with that name."""
+    """A dictionary in which any name is a key: its value is the symbol of the physical constant of that name."""
 
     def __missing__(self, name: str) -> Symbol:
         return constant(name)

@@ -48,7 +48,7 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that reports a failure of this function, for doubles or floats."""
+        """Return the sentence that reports a failure of this function; ``suffix`` is "" for doubles, "f" for floats."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (
@@ -158,7 +158,7 @@ def selftest_files() -> dict[str, str]:
 
 
 def _string(text: str) -> str:
-    """Return a text as C string literals on several lines, for one entry of an array."""
+    """Return a text as string literals of C on several lines, for one entry of an array; long lines are broken."""
     return "\n".join(f'        "{line}"' for line in wrap(text, 100, drop_whitespace=False)) + ","
 
 

@@ -126,7 +126,10 @@ def _digest_number(*parts: object) -> int:
 
 
 def _function(name: str) -> Callable[..., _Residue]:
-    """Return a function of residues whose values are random numbers that depend on its name and arguments alone."""
+    """Return a function of residues, numbers modulo PRIME, that stands for a function such as sine.
+
+    Its values are random numbers that depend on its name and arguments alone, so that equal calls have equal values.
+    """
     return lambda *arguments: _Residue(_digest_number(name, *(_Residue.of(each).value for each in arguments)), 1)
 
 
@@ -134,10 +137,10 @@ _RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
 
 
 def _exact(precision: str) -> Callable[[Fraction], _Residue]:
-    """Return a function that converts a rounded constant of the C text to a residue of its exact number.
+    """Return a function that converts a rounded constant of the C text to a residue, its value modulo PRIME.
 
-    The exact number is the simple fraction that rounds to the constant if there is one, such as 1/3; otherwise it is
-    the constant itself.
+    The value is that of the simple fraction that rounds to the constant if there is one, such as 1/3; otherwise that of
+    the constant itself. ``precision`` is the type of the constant.
     """
 
     def residue(value: Fraction) -> _Residue:
@@ -176,23 +179,23 @@ def step_certificate(step: StepUnderTest) -> str:
 
 
 def _derivatives(method: Method) -> Data:
-    """Return the inputs by which a step is differentiated, for the section ``step``; empty for a step alone."""
+    """Return the names of the inputs by which a step's formula is differentiated; empty without derivatives."""
     return {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
 
 
 def is_step(data: object) -> bool:
-    """Return whether the content of a JSON file is the certificate of a step."""
+    """Return whether ``data``, the content of a JSON file, is the certificate of a time step and not of a kernel."""
     return isinstance(data, dict) and str(data.get("schema", "")).startswith("symrot.step/")
 
 
 def with_bounds(data: Data, bounds: Data) -> Data:
-    """Return the content of a certificate of a step that also states bounds of the errors of one step."""
+    """Return the certificate ``data`` of a step with one more section: ``bounds`` of the errors of one step."""
     bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
     return bare | {"bounds": bounds, "trusted": TRUSTED}
 
 
 def _rates_section(rates: Program, values: Sequence[float]) -> Data:
-    """Return the rates as text, with the values of their parameters."""
+    """Return the rates ``dy/dt`` of a motion as data for JSON: formulas as text, parameters with their ``values``."""
     parameters = [c for a in rates.signature.arguments if a.name == "p" for c in a.components]
     return {
         "states": [list(component[:2]) for component in rates.signature.argument("y").components],
@@ -205,7 +208,7 @@ def _rates_section(rates: Program, values: Sequence[float]) -> Data:
 
 
 def rates_of(data: Data) -> Program:
-    """Return the rates that the certificate of a step states.
+    """Return the rates ``dy/dt`` that the certificate ``data`` of a step states, as a program.
 
     Raises
     ------
@@ -233,7 +236,7 @@ def rates_of(data: Data) -> Program:
 
 
 def _folded(node: Node) -> Node:
-    """Return a formula in which quotients of numbers are fractions, as they were before the formula was printed."""
+    """Return a formula in which quotients of numbers are fractions again: ``1/3`` as text is a quotient of 1 and 3."""
     if node[0] == "call":
         return ("call", node[1], tuple(map(_folded, node[2])))
     if node[0] in ("number", "symbol"):
@@ -315,7 +318,11 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Compare C text and formula at one random point; return the largest degree of an output as a rational function."""
+    """Compare the C text with the formula of the step at one random point, in numbers modulo PRIME.
+
+    Return the largest degree of an output as a rational function, from which the probability of a wrong proof follows.
+    CertificateError is raised if an output differs.
+    """
     values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = _exact(operations.precision)
     computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)

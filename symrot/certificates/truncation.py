@@ -52,7 +52,7 @@ Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omeg
 
 @contextmanager
 def _precision() -> Iterator[None]:
-    """Compute with intervals of ``BITS`` bits inside a ``with`` block."""
+    """Run a ``with`` block in which mpmath computes with intervals of ``BITS`` bits."""
     before, iv.prec = iv.prec, BITS
     try:
         yield
@@ -167,7 +167,7 @@ class _Power:
 
 
 def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    """Return the sum of products; exact zeros, which are integers, cost nothing."""
+    """Return the sum of the products ``a[i]*b[i]``; exact zeros, which are integers, cost nothing."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))), start=0)
 
 
@@ -176,7 +176,7 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return sine and cosine, or hyperbolic sine and cosine, of a series.
+    """Return sine and cosine of the power series x, or hyperbolic sine and cosine if ``sign`` is 1.
 
     Coefficient n + 1 of each is computed from the coefficients up to n of the other one.
     """
@@ -231,7 +231,7 @@ Tree = tuple[Any, ...]  # a rooted tree: the subtrees of its root, in order
 
 
 def _trees(size: int) -> list[Tree]:
-    """Return all rooted trees with ``size`` nodes."""
+    """Return all rooted trees with ``size`` nodes; each gives one condition for a method to have an order."""
     if size == 1:
         return [()]
     trees: set[Tree] = set()
@@ -358,7 +358,11 @@ Terms = list[tuple[Fraction, tuple[tuple[str, int], ...]]]  # of a polynomial: c
 
 
 def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) -> "_Problem":
-    """Return the data from which bounds on boxes are computed; polynomial rates are expanded once."""
+    """Return the data from which bounds of a step's truncation on boxes are computed.
+
+    Polynomial rates are expanded once, which makes their bounds tighter. ``states`` are the names of the states,
+    ``box`` the range of each input.
+    """
     orders = range(method.order + 1, min(method.order + 1 + EXACT_ORDERS, HIGHEST))
     formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
     if not orders or not all(map(_is_polynomial, formulas)):
@@ -412,7 +416,7 @@ def _terms(polynomial: Any) -> Terms:
 
 
 def _sum_of(terms: Terms) -> Node:
-    """Return a polynomial as a formula: the sum of its terms."""
+    """Return a polynomial, given by its terms, as the syntax tree of a formula."""
     total: Node = ("number", Fraction(0))
     for value, powers in terms:
         term: Node = ("number", value)
@@ -423,9 +427,9 @@ def _sum_of(terms: Terms) -> Node:
 
 
 def _range_of(terms: Terms, values: Mapping[str, Any]) -> Any:
-    """Return an interval that contains all values of a polynomial on a box.
+    """Return an interval that contains all values of a polynomial, given by its ``terms``, on a box.
 
-    The interval of an even power contains no negative numbers.
+    ``values`` are the intervals of its variables. The interval of an even power contains no negative numbers.
     """
     total = iv.mpf(0)
     for value, powers in terms:
@@ -450,7 +454,10 @@ class _Problem:
     leading: tuple[list[Terms], ...]
 
     def bounds(self, box: Box) -> list[float]:
-        """Return the bounds on one box, by state; all are infinite if no box contains the motions."""
+        """Return a bound of the truncation error for each state, valid for all motions that start in ``box``.
+
+        All are infinite if no ranges are known that the motions do not leave during the step.
+        """
         values: dict[str, Any] = {name: _interval(*ends) for name, ends in box.items()}
         low, high = box[SIZE]
         span = _interval(min(low, Fraction(0)), max(high, Fraction(0)))  # all times from the start to the end

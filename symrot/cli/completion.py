@@ -50,7 +50,7 @@ def completers(parser: ArgumentParser) -> dict[str, Action]:
 
 
 class _Names:
-    """Function that completes a word typed in a shell: to names that begin with the word, and to files."""
+    """A function that completes a word typed in a shell: it returns the names that begin with the word, and files."""
 
     def __init__(self, names: Callable[[], Iterable[str]], files: Any) -> None:
         self.names, self.files = names, files

@@ -56,7 +56,7 @@ def attitudes(quaternions: Floats) -> Floats:
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes converted to the axes of the formulas of a heavy top, shape (n, 8): hi and lo of each component.
+    """Return attitudes converted to the axes ``frame`` of a heavy top's formulas, shape (n, 8): pairs hi, lo.
 
     The numbers are the same as from :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each attitude.
     """
@@ -137,14 +137,17 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as double-double numbers: each double followed by the low part zero."""
+    """Return doubles as double-double numbers: a row a, b, .. becomes a, 0, b, 0, .."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row."""
+    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row.
+
+    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
+    """
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -155,7 +158,10 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers: shape (2 k,) if motions share them, else (n, 2 k)."""
+    """Return k constants as double-double numbers: shape (2 k,) if all motions share them, else (n, 2 k).
+
+    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
+    """
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
@@ -179,10 +185,10 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from many initial states as a batch, which one call of C computes.
+    """Return the motions of one free body from n initial states as a batch, which one call of C computes.
 
-    :func:`usual` must be true for the angular velocities. The attitudes are pairs hi, lo of doubles, shape (8,) or
-    (n, 8).
+    ``omega`` holds the angular velocities, shape (n, 3), of which :func:`usual` must be true. ``start`` holds the
+    initial attitudes as pairs hi, lo of doubles, shape (8,) if all are equal, or (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -238,7 +244,7 @@ def free_bodies_of_tensors(
 
 
 def _integers(values: list[float]) -> list[int]:
-    """Return three doubles as integers, all multiplied by the same power of two, which makes their ratios exact."""
+    """Return three doubles as integers, all multiplied by the same power of two, so that their ratios are exact."""
     (a, over_a), (b, over_b), (c, over_c) = (value.as_integer_ratio() for value in values)
     if over_a == over_b == over_c:
         return [a, b, c]
@@ -249,10 +255,11 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of symmetric heavy tops from many initial states as a batch, which one call of C computes.
+    """Return the motions of symmetric heavy tops from n initial states as a batch, which one call of C computes.
 
-    ``across`` and ``own`` are the moments of inertia across and about the symmetry axis; ``pull`` is weight times
-    height as hi, lo, of shape (2,) or (n, 2); ``start`` holds attitudes in the axes of ``frame``, see :func:`turned`.
+    ``across`` and ``own`` are the moments of inertia across and about the symmetry axis, kg m^2. ``pull`` is the weight
+    times the height of the centre of mass on this axis, N m, as hi, lo, of shape (2,) or (n, 2). ``start`` holds
+    attitudes in the axes of ``frame``, see :func:`turned`; ``omega`` are the angular velocities, shape (n, 3).
     """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -262,8 +269,8 @@ def tops(
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
     """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C.
 
-    ``across`` and ``own`` are the moments of inertia across and about the axis, ``rotor`` is the angular momentum of
-    the rotor.
+    ``across`` and ``own`` are the moments of inertia across and about the axis, and ``rotor`` is the angular momentum
+    of the rotor; each is one Fraction or an array. ``omega`` and ``start`` are as for :func:`free_bodies`.
     """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
@@ -274,7 +281,8 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
     """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C.
 
-    ``across`` and ``own`` are the moments of inertia across and about the axis.
+    ``across`` and ``own`` are the moments of inertia across and about the axis; these and ``torque`` are one Fraction
+    each, or arrays. ``omega`` and ``start`` are as for :func:`free_bodies`.
     """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
@@ -284,9 +292,10 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis, from many initial states, as a batch for one call of C.
+    """Return the motions of bodies driven about one axis, from n initial states, as a batch for one call of C.
 
-    ``constants`` describes one body for all initial states, or is a list with one body for each initial state.
+    ``constants`` describes one body for all initial states, or is a list with one body for each. ``omega`` and
+    ``start`` are as for :func:`free_bodies`.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

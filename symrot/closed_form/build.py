@@ -52,12 +52,18 @@ def _files() -> dict[str, Path]:
 
 
 def source(name: str) -> str:
-    """Return the text of the C file ``name.c`` with the texts of its headers inserted, each only once."""
+    """Return the text of the C file ``name.c`` with the texts of its headers in place of their includes.
+
+    Each header is inserted only once.
+    """
     return joined(name)
 
 
 def joined(*names: str) -> str:
-    """Return the texts of several C files as one, with the texts of their headers inserted, each only once."""
+    """Return the texts of the C files ``names`` as one, with the texts of their headers in place of their includes.
+
+    Each header is inserted only once.
+    """
     places, seen = _files(), set()
 
     def text(file: str) -> str:

@@ -38,7 +38,7 @@ class Batch(NamedTuple):
 
 
 class _Motions(ctypes.Structure):
-    """The C struct ``symrot_many_motions`` of many.c: the constants, times and samples of many motions."""
+    """The C struct ``symrot_many_motions`` of many.c: the constants, times and arrays of samples of a batch."""
 
     _fields_ = (
         ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),
@@ -53,7 +53,7 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions into arrays; return the indices of the motions that could not be computed.
+    """Write the samples of n motions into arrays, and return the indices of the motions that could not be computed.
 
     The numbers of these motions exceed the range of double-double arithmetic, so they must be computed one by one.
 

@@ -53,7 +53,7 @@ class ClosedForm(NamedTuple):
     axis: Callable[[Scene], int | None] = lambda scene: None  # body axis of the motion, if any
 
     def motion(self, scene: Scene) -> Exact:
-        """Return the motion of a scene in this closed form, from the scene's initial state."""
+        """Return the motion of a scene to which this closed form applies, from the scene's initial state."""
         return self.starts(scene)(scene.initial)
 
     def begin(self) -> None:
@@ -163,7 +163,8 @@ def _driven_axis(scene: Scene) -> int | None:
 def _driven_symmetry_axis(scene: Scene) -> int | None:
     """Return the index of the symmetry axis about which a constant torque drives the body, or None.
 
-    The result is None for any other scene, and for a scene with damping whose output needs the attitude.
+    The result is None if there are other torques or no such axis, and for a scene with damping whose output needs the
+    attitude, since the attitude then has no closed form.
     """
     if not _is_driven(scene):
         return None

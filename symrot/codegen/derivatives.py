@@ -65,7 +65,7 @@ class Formulas:
     def explicit(self) -> "Formulas":
         """The same outputs as formulas in the inputs alone.
 
-        Symbols of intermediate quantities are replaced by formulas.
+        The symbol of each intermediate quantity is replaced by its formula.
         """
         outputs = []
         for name, formula in self.outputs:
@@ -236,8 +236,8 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
     """Return the derivative ``slope`` as later formulas should contain it.
 
-    As a new symbol, or unchanged if it is short. The new symbol, whose name is ``name``, is appended with its formula
-    to the intermediate quantities ``named``. A number, a symbol, or a number times a symbol counts as short.
+    A number, a symbol, or a number times a symbol is returned unchanged. Otherwise the result is a new symbol called
+    ``name``; it is appended with its formula ``slope`` to the intermediate quantities ``named``.
     """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope

@@ -179,12 +179,12 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive and return the kernel of a planned motion.
+    """Derive and return the kernel of a planned motion, which a stepper integrates.
 
-    Programs of its rates dy/dt, its quantities, its conserved quantities. ``structure`` describes the motion without
-    the values of its constants. As soon as the rates are derived, ``on_rates`` is called with their program and their C
-    text, so that a compiler can run while the other quantities, such as energy and momentum, are derived and the
-    conservation of some is proven.
+    It consists of programs of the rates dy/dt, of quantities such as energy and momentum, and of the conserved
+    quantities. ``structure`` describes the motion without the values of its constants. As soon as the rates are
+    derived, ``on_rates`` is called with their program and their C text, so that a compiler can run while the rest is
+    derived and the conservation of quantities is proven.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)

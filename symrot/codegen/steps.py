@@ -50,7 +50,7 @@ class RungeKutta:
 
 @dataclass(frozen=True)
 class TaylorSeries:
-    """The Taylor series of the motion up to the power ``order`` of dt."""
+    """A Taylor method: the step is the Taylor polynomial of the motion up to the power ``order`` of dt."""
 
     order: int
     name: str = "taylor"

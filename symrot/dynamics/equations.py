@@ -34,7 +34,7 @@ class AngleMotion(Motion):
     sequence: str
 
     def to_body(self, vector_s: Matrix) -> Matrix:
-        """Return the body components of a vector given in space components."""
+        """Return the body components of ``vector_s``, given in space components, as formulas in the angles."""
         return dcm(self.sequence).T * vector_s
 
 
@@ -57,7 +57,7 @@ class Equations:
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
-        """The rates as formulas in which all named quantities are replaced by their definitions."""
+        """The rates as formulas in t, the states and constants alone: definitions are inserted for named quantities."""
         rates = self.rates
         for symbol, value in reversed(self.definitions):
             rates = tuple(rate.xreplace({symbol: value}) for rate in rates)

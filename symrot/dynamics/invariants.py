@@ -125,7 +125,8 @@ def _listed(kinds: Sequence[str]) -> str:
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
     """Return the conserved quantities of a motion, followed by the candidates that are not conserved.
 
-    Components of omega that the plan treats as constant are among the conserved quantities.
+    ``equations`` must be those of ``structure``. Components of omega that the plan treats as constant are among the
+    conserved quantities.
     """
     kinds = [torque.kind for torque in structure.torques]
     candidates = []

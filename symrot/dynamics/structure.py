@@ -58,13 +58,16 @@ class PrincipalInertia(NamedTuple):
 
 
 class InertiaTensor(NamedTuple):
-    """An inertia tensor with products of inertia: the sorted names of its nonzero entries, such as ``I_xy``."""
+    """An inertia tensor with products of inertia: the sorted names of its entries that are not zero.
+
+    Example: ``("I_xx", "I_xy", "I_yy", "I_zz")``.
+    """
 
     entries: tuple[str, ...]
 
 
 class TorqueSwitch(NamedTuple):
-    """A function in a torque's formulas that jumps or has a kink, such as sign or abs; its formulas are texts.
+    """A function in a torque's formulas that jumps (such as sign) or has a kink (such as abs); formulas are texts.
 
     The fields are explained in :class:`symrot.formula.switches.Switch`.
     """
@@ -207,7 +210,7 @@ class Structure:
 
     @property
     def moving(self) -> list[int]:
-        """The indices, 0 to 2, of the components of omega_b that are states."""
+        """The indices, 0 to 2, of the components of omega_b that change and are therefore states."""
         return [i for i in range(3) if self.constant[i] is None and self.planar in (None, i)]
 
     @property
@@ -226,7 +229,10 @@ class Structure:
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON; two structures are equal if and only if their data are equal."""
+        """Return the structure as data for JSON; two structures are equal if and only if their data are equal.
+
+        The cache finds the compiled kernel of a plan by these data.
+        """
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

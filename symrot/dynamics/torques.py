@@ -63,7 +63,7 @@ class Motion:
     inertia: Matrix  # kg m^2, shape (3, 3)
 
     def to_body(self, vector_s: Matrix) -> Matrix:
-        """Return the body components of a vector given in space components."""
+        """Return the body components of ``vector_s``, given in space components, as formulas in the quaternion."""
         return quaternion_to_dcm(self.quaternion).T * vector_s
 
 
@@ -71,7 +71,7 @@ class Motion:
 class TorqueLaw:
     """The formula of one torque, with the potential and the angular momentum that it contributes.
 
-    All vectors are in body components. A rotor has an angular momentum and no torque; a spring has a torque and a
+    All vectors are in body components. A rotor contributes an angular momentum and no torque, a spring a torque and a
     potential.
     """
 
@@ -218,9 +218,10 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values, by name, of all names that the formulas of an ``expression`` torque may contain.
+    """Return the values, as expressions, of all names that the formulas of an ``expression`` torque may contain.
 
-    The names are those of the time, angular velocity, attitude and so on, and of the torque's own parameters and modes.
+    The names are t, omega_1 to omega_3, q0 to q3 if the attitude is computed, and the torque's own parameters and
+    modes. (A mode is a symbol for the present value of a function that jumps, such as sign.)
     """
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
@@ -245,9 +246,10 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the value of a torque's field as symbols or exact numbers: a scalar, a vector or a quaternion.
+    """Return the value of the torque's field ``name`` as symbols or exact numbers: a scalar, a vector or a quaternion.
 
-    The components of a vector are numbered from 1, the components of a quaternion from 0.
+    ``pattern`` says which components are 0, 1, -1 or free; a free one becomes a symbol. The components of a vector are
+    numbered from 1, those of a quaternion from 0: the field ``c`` gives ``c_1``, ``c_2``, ``c_3``.
     """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
@@ -255,7 +257,10 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque, body components, that a law's potential exerts: minus its derivatives by rotations."""
+    """Return the torque, body components, that a law's potential exerts: minus its derivatives by small rotations.
+
+    It is compared with the law's own formula, to prove that both agree.
+    """
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

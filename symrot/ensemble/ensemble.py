@@ -86,7 +86,7 @@ class EnsembleMember(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether the motion reached its last time."""
+        """Whether the motion was computed up to its last sample time; if not, :attr:`message` says why."""
         return not self.message
 
     @property
@@ -103,7 +103,7 @@ class EnsembleMember(MotionSamples):
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene of this motion, with its own initial state and constants."""
+        """The scene of this motion: the ensemble's scene, with this motion's own initial state and constants."""
         return self._ensemble._source.variation.scene_of(self._number)
 
     def _evaluate(self, *names: str) -> Floats:
@@ -152,7 +152,7 @@ class Ensemble(MotionSamples):
         return len(self.omega)
 
     def __getitem__(self, k: int) -> EnsembleMember:
-        """Return motion k; negative numbers count from the end."""
+        """Return motion k, from 0, as an :class:`EnsembleMember`; negative numbers count from the end."""
         return EnsembleMember(self, range(len(self))[index(k)])
 
     def __iter__(self) -> Iterator[EnsembleMember]:
@@ -169,7 +169,7 @@ class Ensemble(MotionSamples):
 
     @property
     def scene(self) -> Scene:
-        """The scene, whose initial state and constants the motions vary."""
+        """The scene that all motions share, except for initial states and constants that vary."""
         return self._source.variation.scene
 
     @property
@@ -189,12 +189,12 @@ class Ensemble(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether every motion reached its last time."""
+        """Whether every motion was computed up to its last sample time; :attr:`status` tells which were not."""
         return not self.status.any()
 
     @property
     def method(self) -> str:
-        """The names of all methods by which motions were computed, separated by slashes."""
+        """The names of all methods by which motions were computed, separated by slashes, such as ``"exact/taylor"``."""
         return "/".join(dict.fromkeys(self.methods))
 
     def _evaluate(self, *names: str) -> Floats:

@@ -151,7 +151,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return a rough angle of rotation for each trajectory, rad, shape (n,).
+    """Return a rough angle of rotation, rad, of each trajectory from ``start`` to its farthest sample time: shape (n,).
 
     It is estimated from the initial angular velocity and the constant torques.
     """
@@ -173,10 +173,10 @@ def follow_exact(
     variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Compute the samples of the trajectories ``solved`` by their closed form, and write them into the given arrays.
+    """Compute the samples of the trajectories ``solved`` by their closed form, and write them into arrays.
 
-    The arrays are ``omega`` and ``quaternion``; if ``quaternion`` is None, the attitude is not computed. ``times``, s,
-    have shape (m,) or (n, m).
+    ``omega`` (n, m, 3) and ``quaternion`` (n, m, 4) are these arrays; without ``quaternion`` no attitude is computed.
+    ``times``, s, have shape (m,) or (n, m), ``start`` is the initial time, and ``workers`` the number of threads.
     """
     since = times - start if start else times
     form, rows, batch, usual = solved
@@ -209,7 +209,11 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Set the samples at the initial time to the exact initial states, as for single motions."""
+    """Set the samples of the trajectories ``rows`` at the initial time to their exact initial states.
+
+    ``at_start`` is true for each sample time that equals the initial time. The formulas would give these samples with
+    rounding errors; single motions are treated in the same way.
+    """
     if not at_start.any():
         return
     states = variation.initial_states
@@ -227,7 +231,7 @@ def _put_starts(
 
 
 class _Alone:
-    """A callable that returns the motion of one trajectory in closed form, for trajectories computed one by one.
+    """A function from the index of a trajectory to its motion in closed form, for trajectories computed one by one.
 
     The motions share the constants of the body if no constant of the scene varies.
     """
@@ -266,7 +270,7 @@ class _Part(NamedTuple):
 
     @property
     def start(self) -> Floats:
-        """The initial quaternions, each component as two doubles (hi, lo), shape (n, 8), or (8,) if all are equal."""
+        """The initial quaternions, each component as two doubles (hi, lo): shape (n, 8), or (8,) if all are equal."""
         variation, attitudes = self.variation, self.variation.attitudes
         if attitudes is None:
             own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
@@ -274,20 +278,26 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return a constant: one Fraction if it does not vary, otherwise an array with one value per trajectory."""
+        """Return the constant ``name`` of the plan: one Fraction, or an array if it varies.
+
+        The array has one value for each trajectory of the part.
+        """
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across and about the symmetry axis, each as :meth:`constant` returns it."""
+        """Return the moments of inertia across the symmetry axis and about it, kg m^2.
+
+        Each is one Fraction, or an array with one value per trajectory if it varies.
+        """
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield groups of trajectories of one closed form: row indices, their batch, and the rows for which it is valid.
+    """Yield groups of the trajectories ``rows``, all of one closed form: (indices, batch, rows for which it is valid).
 
-    The batch is None if the motions of the group must be computed one by one.
+    The batch (the constants as arrays) is None if the motions of the group must be computed one by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -313,9 +323,10 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories of one kind of closed form as one part; heavy tops may form two parts.
+    """Yield the trajectories ``rows`` as parts, each for one batch; only heavy tops form two parts.
 
-    If the height of the centre of mass varies, it is positive in the first part and negative or zero in the second.
+    If the height of the centre of mass varies, it is positive in the first part and negative or zero in the second: the
+    formulas then use different axes.
     """
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:

@@ -108,7 +108,7 @@ _POINTERS = (
 
 
 class _Job(ctypes.Structure):
-    """The C struct ``symrot_job`` of lanes.c: the work of one thread."""
+    """The C struct ``symrot_job`` of lanes.c: the motions that one thread integrates, and where their results go."""
 
     _fields_ = (
         ("legs", ctypes.c_int64),
@@ -152,7 +152,10 @@ class Lanes:
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
+        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of ``unit``.
+
+        ``y`` are the N states at this time, ``p`` the parameters. Tests compare them with other derivatives.
+        """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))
         jet = self._library.symrot_lanes_jet
@@ -162,7 +165,10 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Integrate all motions of a job to their ends, or until ``interrupted`` returns true."""
+        """Integrate all motions of a job to their ends, or until ``interrupted()`` returns true.
+
+        The results are written to the arrays whose addresses the job holds.
+        """
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -176,9 +182,9 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """The legs of all motions (the parts before and after t0), and their sample times sorted by distance from t0.
+    """The legs of all motions (the parts after t0 and before t0), and the sample times of each leg.
 
-    ``table`` holds the sorted times, row after row. See ``symrot_job`` in lanes.c.
+    The times are sorted by their distance from t0; ``table`` holds them, row after row. See ``symrot_job`` in lanes.c.
     """
 
     table: Floats
@@ -250,7 +256,7 @@ class LaneIntegration:
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
     def run(self) -> Outcome:
-        """Integrate the motions and return their states at the sample times."""
+        """Integrate the motions and return their states at the sample times, with the cost of each motion."""
         n, total, legs = len(self.y), self.total, self.legs
         states = np.full((n * self.samples, self.library.states), np.nan)
         measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)

@@ -78,7 +78,7 @@ class Problem(NamedTuple):
         return self._replace(variation=variation, plan=variation.plan(), times=times)
 
     def times_of(self, i: int) -> Floats:
-        """Return the sample times of motion i, s, shape (m,)."""
+        """Return the sample times of motion i, s, shape (m,), whether all motions share them or not."""
         times: Floats = self.times if self.times.ndim == 1 else self.times[i]
         return times
 
@@ -127,9 +127,9 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions with the same equations.
+    """Return the samples of motions with the same equations: in closed form, in SIMD lanes, or one by one.
 
-    ``rows`` are the indices of these motions in the ensemble.
+    ``rows`` are the indices of these motions in the ensemble, for messages; ``method`` is as for :func:`follow`.
     """
     count = len(problem.variation)
     solved = _solved(problem, method)
@@ -169,9 +169,9 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Compute motions under torques with switching functions one by one; write their samples into the arrays.
+    """Compute motions under torques with jumps or kinks one by one; write their samples into the arrays.
 
-    Return the samples and the cost. ``stepped`` contains the indices of the trajectories.
+    ``stepped`` contains the indices of these trajectories. The result also holds their methods, messages and costs.
     """
     from symrot.propagation.propagate import propagator
 
@@ -257,7 +257,7 @@ class _Stepped:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
-        """Convert times of the scene, s, to times since the epoch, which the steppers use."""
+        """Convert times of the scene, s, to times since the epoch (a reference time), from which the steppers count."""
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
@@ -274,7 +274,10 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Convert integrated states to angular velocity and attitude, written into ``omega`` and ``quaternion``."""
+        """Write the angular velocity and the attitude that follow from ``states`` into ``omega`` and ``quaternion``.
+
+        ``states`` has shape (n, m, N): a plan may use fewer states than the seven of omega and q, such as one angle.
+        """
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
@@ -300,7 +303,10 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Integrate all trajectories by ``integrate(k, times)``, which returns states and cost of trajectory k."""
+        """Integrate all trajectories, one after the other, and return their states, costs and messages.
+
+        ``integrate(k, times)`` returns the states and the cost of trajectory k.
+        """
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -329,9 +335,10 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Compute motions under torques given by formulas, one after the other, and return their outcome.
+    """Integrate motions under torques given by formulas, one after the other, and return their outcome.
 
     Their steps are limited by bounds of the rates or need a check; the stepper in SIMD lanes supports neither.
+    ``stepped`` holds the trajectories.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)

@@ -47,7 +47,7 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of trajectory ``chosen[k]``, by name, as exact fractions."""
+        """Return all constants of trajectory ``chosen[k]`` as exact fractions, by name, such as ``weight`` or ``A``."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
@@ -72,9 +72,9 @@ class Numbers:
         return values
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of a formula, one for each trajectory.
+        """Return the values of the formula ``node``, one for each trajectory.
 
-        For trajectories with equal constants, the formula is evaluated only once.
+        ``used`` are the names in the formula. For trajectories with equal constants it is evaluated only once.
         """
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)

@@ -141,7 +141,7 @@ class Variation:
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return the constant with this name in the plan: a Fraction if it does not vary, otherwise an array (n,)."""
+        """Return the constant ``name`` of the plan, such as ``weight``: a Fraction, or an array (n,) if it varies."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -171,7 +171,10 @@ class Variation:
 
     @property
     def negligible(self) -> Floats:
-        """The size of products of inertia, kg m^2, below which the body axes count as principal, shape (n,)."""
+        """The limit, kg m^2, up to which products of inertia count as zero, for each trajectory, shape (n,).
+
+        A trajectory whose products are all this small counts as given in principal axes.
+        """
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
@@ -203,10 +206,9 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that is valid for all trajectories.
+        """Return a plan (the choice of equations and states) that is valid for all trajectories.
 
-        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every
-        trajectory.
+        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every trajectory.
         """
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
@@ -219,10 +221,10 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return groups of trajectories, as row indices in order, such that :meth:`plan` is the same within each group.
+        """Return groups of trajectories, as arrays of row indices, such that all of a group have the same plan.
 
-        The group of a trajectory, and therefore its plan, depends only on its own constants: on which of them are zero,
-        and on which moments of inertia are equal.
+        The group of a trajectory depends only on its own constants: on which of them are zero, and on which moments of
+        inertia are equal.
         """
         bits = [column != 0 for column in self.columns.values()]
         if not PLACES.keys().isdisjoint(self.columns):
@@ -260,7 +262,7 @@ class Variation:
         return tensor
 
     def _agree(self, one: str, other: str) -> bool:
-        """Return whether two moments equal each other in every trajectory."""
+        """Return whether two moments, such as ``"I_xx"`` and ``"I_yy"``, are equal in every trajectory."""
         own = [self.scene.body.inertia[PLACES[name][0]][PLACES[name][1]] for name in (one, other)]
         if one not in self.columns and other not in self.columns:
             return number.equal(*own)
@@ -358,7 +360,10 @@ def read_variation(
 
 
 def _quaternions(attitude: Any) -> ArrayLike:
-    """Return quaternions, scalar first, of n rotations of SciPy, n quaternions or n matrices ``dcm_sb``."""
+    """Return the argument ``attitude`` as quaternions, scalar first, shape (n, 4).
+
+    It holds n rotations of SciPy, n quaternions or n matrices ``dcm_sb``.
+    """
     if hasattr(attitude, "as_quat"):
         return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
     array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")
@@ -391,7 +396,10 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m)."""
+    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m).
+
+    ``t`` is the argument of the user; if it is None, the sample times of the scene are used.
+    """
     if t is None:
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)

@@ -22,7 +22,11 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """The number of formulas that one decision may still convert to polynomials, and stored conversions."""
+    """The state of one decision, which bounds its work.
+
+    ``left`` is the number of formulas that it may still convert to polynomials, ``results`` holds the stored
+    conversions.
+    """
 
     left: int = MOST_RINGS
     results: dict[Hashable, Any] = field(default_factory=dict)
@@ -33,7 +37,10 @@ _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", defa
 
 @contextmanager
 def one_decision() -> Iterator[None]:
-    """Count the conversions of formulas to polynomials in one decision; a decision inside another shares its budget."""
+    """Return a context (``with one_decision():``) in which conversions of formulas count against one budget.
+
+    A decision inside another shares its budget.
+    """
     if _current.get() is not None:
         yield
         return
@@ -45,7 +52,10 @@ def one_decision() -> Iterator[None]:
 
 
 def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
-    """Return ``compute()``. Within one decision the function is called once for each key, and its result is stored."""
+    """Return ``compute()``; within one decision, ``compute`` is called once for each ``key``, and its result is stored.
+
+    Outside a decision it is called every time.
+    """
     budget = _current.get()
     if budget is None:
         return compute()
@@ -55,12 +65,12 @@ def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
 
 
 def spend_ring() -> None:
-    """Count one more conversion of a formula to polynomials against the budget of the current decision.
+    """Count one more conversion of a formula to polynomials; outside a decision nothing is counted.
 
     Raises
     ------
     TooLarge
-        If the budget is exhausted.
+        If the budget of the decision is exhausted.
     """
     budget = _current.get()
     if budget is None:

@@ -26,9 +26,10 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions by equal ones.
+    """Prove ``left = right`` by replacing inverse functions and logarithms by others that are proven equal.
 
-    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative. Return the polynomial rings
+    in which the proof computes (the proof holds where their divisors are not zero), or None if no proof was found.
     """
     rings: list[FormulaRing] = []
     while True:
@@ -51,9 +52,9 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield pairs of symbols for inverse functions that are proven equal, or to have the sum pi/2.
+    """Yield pairs of the inverse functions and logarithms ``names`` that are proven equal, or to have the sum pi/2.
 
-    Each is yielded as (symbol, its value by the other symbol, the polynomial rings in which the proof computes).
+    Each pair is yielded as (one, its value in terms of the other, the polynomial rings in which the proof computes).
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

@@ -53,9 +53,10 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 @dataclass(frozen=True)
 class FreeChoice:
-    """Variables whose values are chosen together, such as sine and cosine of an angle, with their possible values.
+    """Variables of the ring whose values are chosen together: one symbol, an angle's sine and cosine, or a unit vector.
 
-    Simple values come first.
+    ``generators`` are the indices of the variables, ``simple`` a few short choices of their values, and ``random``
+    draws further ones.
     """
 
     generators: tuple[int, ...]
@@ -67,9 +68,10 @@ class FreeChoice:
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a rational point where ``left`` and ``right`` differ, or None if no such point is found.
+    """Return a counterexample to ``left = right`` in rational numbers, or None if no such point is found.
 
-    The result is also None if a side is not real. Both formulas must be convertible to polynomials of ``ring``.
+    There is no search if a formula contains roots, inverse functions or exponentials. Both sides must be convertible to
+    polynomials of ``ring``. ``entry`` is the place in a matrix, for the report.
     """
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
@@ -78,7 +80,10 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every variable, or None if a side is undefined there or both sides are equal."""
+        """Return the value of every variable for one choice of the free ones, if this point is a counterexample.
+
+        Return None if a hypothesis or an assumption is violated, a side is undefined, or both sides are equal.
+        """
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -118,10 +123,10 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return a function that tests whether both sides are defined and differ at given values, and the test's cost.
+    """Return (test, cost): ``test(values)`` says whether both sides are defined and differ at a point.
 
-    The cost is a number of terms. The test evaluates the polynomial of the difference or, if that has more terms, the
-    formulas as they are written.
+    ``values`` maps indices of variables of the ring to numbers. The cost is the number of terms that a test evaluates:
+    those of the polynomial left - right or, if that has more terms, those of the formulas as they are written.
     """
     written = pieces((left, right))
     try:
@@ -144,10 +149,10 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point with rational symbols at which 50-digit intervals prove that both sides differ, or None.
+    """Return a counterexample to ``left = right`` whose symbols are rational but whose sides need not be, or None.
 
-    Hypotheses are satisfied by rational points of spheres and by solving linear equations, as in
-    :func:`rational_witness`.
+    Intervals of 50 digits prove that both sides differ. Hypotheses are satisfied by rational points of spheres and by
+    solving linear equations, as in :func:`rational_witness`. ``entry`` is the place in a matrix, for the report.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
@@ -198,9 +203,9 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Change the values of a point so that formulas that are negative there become nonnegative, if possible.
+    """Change ``values``, the values of a point, so that those ``formulas`` that are negative there become nonnegative.
 
-    For each of these formulas, one symbol of ``movable`` gets the first value of ``simple`` that achieves this.
+    For each of them, one symbol of ``movable`` gets the first value of ``simple`` that achieves this, if there is one.
     """
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
@@ -212,7 +217,10 @@ def _move_within(
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
-    """Return the symbols and functions of time that occur only inside sines and cosines, alone or times a number."""
+    """Return the symbols and functions of time that occur only as angles, inside sines and cosines.
+
+    Multiples of pi are simple values for them.
+    """
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
@@ -256,7 +264,10 @@ def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational if it is rational and contains few roots; otherwise return it as it is."""
+    """Return a closed-form number as a rational if it is rational, as ``sqrt(4) + 1`` is.
+
+    Any other number is returned unchanged, also one with many roots, which would take long to test.
+    """
     if number.is_Rational or not number.is_number:
         return number
     try:
@@ -278,9 +289,10 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return the coordinates that can be chosen freely, and the hypotheses that each determine one more variable.
+    """Return (free, solved): the choices that determine a point, and the hypotheses that determine the rest of it.
 
-    Each of these hypotheses is linear in the variable that it determines.
+    ``solved`` holds pairs (variable, hypothesis that is linear in it). A hypothesis such as ``q0^2 + q1^2 + q2^2 + q3^2
+    = 1`` makes its variables one free choice, a unit vector.
     """
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
@@ -308,7 +320,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
 
 
 def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
-    """Return the variables of a hypothesis of the form ``sum of their squares = 1``; None for any other hypothesis."""
+    """Return the variables of a hypothesis ``x^2 + y^2 + .. = 1``, or None if the hypothesis has another form."""
     if not poly:
         return None
     constant = poly.coeff(1)
@@ -329,7 +341,10 @@ def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
-    """Return simple rational unit vectors: on the axes, (3/5, 4/5), (1, 2, 2)/3 and (1, 1, 1, 1)/2."""
+    """Return simple rational unit vectors with ``size`` components.
+
+    They lie on the axes, or their components other than zero are (3/5, 4/5), (1, 2, 2)/3 or (1, 1, 1, 1)/2.
+    """
     points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
     for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
         seed = tuple(map(Fraction, numbers.split()))
@@ -343,7 +358,10 @@ def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational unit vectors, by stereographic projection."""
+    """Return a function that draws random rational unit vectors with ``size`` components.
+
+    It maps random points of a plane to the sphere (stereographic projection).
+    """
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
@@ -354,7 +372,10 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational numbers which satisfy the assumptions on a symbol (positive, ..)."""
+    """Return a function that draws random rational numbers as values of the symbol ``leaf``.
+
+    They agree with its assumptions, such as positive or integer.
+    """
 
     def draw(source: Random) -> tuple[Fraction, ...]:
         for _ in range(20):
@@ -367,7 +388,7 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _assumed(leaf: Expr, value: Any) -> bool:
-    """Return whether a rational value agrees with the assumptions on a symbol, such as positive or integer."""
+    """Return whether a rational ``value`` agrees with SymPy's assumptions on the symbol ``leaf``, such as positive."""
     return not (
         (leaf.is_positive and value <= 0)
         or (leaf.is_negative and value >= 0)
@@ -378,7 +399,11 @@ def _assumed(leaf: Expr, value: Any) -> bool:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Solve a hypothesis for a variable in which it is linear and store the value; return False if impossible."""
+    """Store the value of the variable ``generator`` that satisfies a hypothesis, given the others in ``values``.
+
+    The hypothesis is linear in this variable. Return False if another variable has no value yet, or if the variable
+    drops out.
+    """
     values[generator] = Fraction(0)
     if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
         return False
@@ -407,7 +432,10 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
-    """Return a formula's value at a point, operation by operation; raise ``ZeroDivisionError`` at a zero divisor."""
+    """Return the value of the formula ``node`` at the point ``values``, operation by operation.
+
+    ``known`` stores values of subexpressions at this point. Raise ``ZeroDivisionError`` at a zero divisor.
+    """
     if node in ring.symbols:
         return values[ring.symbols[node]]
     if node not in known:
@@ -426,9 +454,9 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 def _named(
     ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield each used symbol or angle of a point with its value.
+    """Yield the point of a counterexample as pairs (symbol, value), for symbols and angles that are in ``used``.
 
-    Multiples of pi/2 are shown as angles, all other angles by their cosine and sine.
+    Multiples of pi/2 are shown as angles, all other angles by pairs for their cosine and their sine.
     """
     zero, one = Fraction(0), Fraction(1)
     quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}

@@ -87,7 +87,10 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
 
 
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
-    """Return whether a formula or matrix is proven to vanish identically (see :func:`normal_form`)."""
+    """Return whether a formula, or each entry of a matrix, is proven to be zero everywhere, since its normal form is 0.
+
+    ``relations`` are hypotheses, as for :func:`normal_form`. Outside the scope of that function, False proves nothing.
+    """
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
     return all(vanishes(ring, ring.ratio(entry).numerator) for entry in entries)
@@ -128,7 +131,7 @@ class _FormulaCase(Case):
     normal_forms: dict[int, Expr] = field(default_factory=dict)
 
     def residual(self) -> Any:
-        """The normal form of left - right; entries that are proven equal are zero."""
+        """The normal form of left - right, for the report; entries of a matrix that are proven equal are zero."""
         forms = {place: self.normal_forms[place] for place in self.unproven}
         return _shaped([forms.get(place, Integer(0)) for place in range(len(self.lefts))], self.shape)
 
@@ -162,19 +165,22 @@ class _FormulaCase(Case):
 
 
 def normalise(case: _FormulaCase) -> None:
-    """Convert the unproven entries of an equation to normal form, which may show that their two sides are equal."""
+    """Convert the unproven entries of left - right to normal form; those whose form is 0 are no longer unproven."""
     case.normal_forms = {place: case.ring.expression(case.residuals[place]) for place in case.unproven}
     case.unproven = [place for place, form in case.normal_forms.items() if form != 0]
 
 
 def witness(case: _FormulaCase) -> None:
-    """Store a counterexample in ``case``, if one is found: a rational point, or else one with closed-form values."""
+    """Search a counterexample, first a rational point, then one with closed-form values, and store it in ``case``."""
     case.rely_on(case.proof_rings)
     case.counterexample = case.search(rational_witness, closed_form_witness)
 
 
 def leave_open(case: _FormulaCase) -> Decision:
-    """Return the verdict "undecided" with the terms, such as nested roots, that prevent a decision."""
+    """Return the verdict "undecided", with the terms that prevent a decision, such as nested roots.
+
+    This is the last stage, which decides what all others leave open.
+    """
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Decision("undecided", case.conditions, stopped_by=stopped_by)

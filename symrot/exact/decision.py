@@ -113,11 +113,18 @@ class Case(ABC):
 
     @abstractmethod
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the relations that hold where both sides are defined and the proofs in further ``rings`` are valid."""
+        """Return the conditions of a verdict, relations under which the proof of an equation is valid.
+
+        They say where both sides are defined, and that divisors in the further polynomial ``rings``, in which proofs
+        computed, are not zero.
+        """
 
     @abstractmethod
     def confirmed(self) -> Decision:
-        """Return the verdict "true" if a point is known where both sides are defined, else "undecided"."""
+        """Return the verdict "true" for proven sides if a point is known where both are defined, else "undecided".
+
+        An equation whose sides are defined nowhere would be true of nothing.
+        """
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
         """Add the polynomial rings in which a proof computes to the evidence of the case.
@@ -132,9 +139,10 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that ``searches`` find in the entries ``places`` (default: unproven entries).
+        """Return the first counterexample that one of ``searches`` returns for one of the entries ``places``, or None.
 
-        A point that provably violates a hypothesis is skipped.
+        ``places`` are numbers of entries; without it the unproven entries are searched. A search is a function such as
+        :func:`symrot.exact.counterexample.rational_witness`. A point that provably violates a hypothesis is skipped.
         """
         for search in searches:
             for place in self.unproven[:MOST_SEARCHED] if places is None else places:
@@ -178,7 +186,7 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Return the verdict "true" if all entries of an equation are proven equal, else None."""
+    """Return a decision, normally "true", if all entries of an equation are proven equal; None if some are not."""
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -186,14 +194,17 @@ def prove(case: Case) -> Decision | None:
 
 
 def refute(case: Case) -> Decision | None:
-    """Return the verdict "false" if a counterexample to an equation is found, else None."""
+    """Return the decision "false" if an earlier stage has stored a counterexample in ``case``, else None."""
     if case.counterexample is None:
         return None
     return Decision("false", case.conditions, counterexample=case.counterexample)
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return the decision "true" if unproven entries are equal after arguments are simplified; else None."""
+    """Return a decision, normally "true", if the unproven entries are equal once arguments of functions are simplified.
+
+    Otherwise return None. See :mod:`symrot.exact.plain_arguments`.
+    """
     ring = case.ring
     try:
         proofs = [
@@ -209,7 +220,10 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return the decision "true" if unproven entries are equal after equal inverse functions are merged; else None."""
+    """Return a decision, normally "true", if unproven entries are equal once equal inverse functions are merged.
+
+    Otherwise return None. See :mod:`symrot.exact.congruence_closure`.
+    """
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:
@@ -255,7 +269,7 @@ def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]
 
 
 def flatten(expression: Any) -> tuple[list[Expr], Shape]:
-    """Return the entries of a formula row by row, and its shape.
+    """Return (entries, shape) of a formula: its entries row by row, and (rows, columns), or None for a scalar.
 
     Raises
     ------
@@ -273,13 +287,13 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), counted from 1, of a matrix entry with a number counted row by row from 0.
+    """Return (row, column), counted from 1, of entry ``number``, counted row by row from 0.
 
-    Return None if ``shape`` is that of a scalar.
+    In a 3 x 3 matrix, entry 3 is at (2, 1). Return None if ``shape`` is that of a scalar.
     """
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 
 def shape_text(shape: Shape) -> str:
-    """Return the shape of a matrix or scalar in words."""
+    """Return a shape in words: ``a 3 x 3 matrix``, or ``a scalar`` for None."""
     return "a scalar" if shape is None else f"a {shape[0]} x {shape[1]} matrix"

@@ -60,10 +60,9 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition under which a claim holds: a short code, a text, and formulas that must be zero or nonnegative.
+    """A condition that makes a claim true: ``zeros`` are zero and ``signs`` nonnegative, with a short code and a text.
 
-    The formulas ``zeros`` must be zero, and the formulas ``signs`` nonnegative; those of ``signs`` that are also in
-    ``strict`` must be positive.
+    Those of ``signs`` that are also in ``strict`` must be positive. The code names the kind of condition.
     """
 
     code: str
@@ -74,7 +73,7 @@ class Requirement:
 
     @property
     def conditions(self) -> list[tuple[Expr, str]]:
-        """The conditions on signs, each as (formula, ``"> 0"`` or ``">= 0"``)."""
+        """The conditions on signs as pairs (formula, ``"> 0"`` or ``">= 0"``), for the report."""
         return [(formula, "> 0" if formula in self.strict else ">= 0") for formula in self.signs]
 
     def __str__(self) -> str:

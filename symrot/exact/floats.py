@@ -18,7 +18,10 @@ CLEARLY = 1e-4
 
 
 class NoValue(ArithmeticError):
-    """The exception for a formula that has no real value at a point, or contains an unknown function."""
+    """The exception for a formula that has no real value at a point, or whose value cannot be computed.
+
+    An unknown function is one reason.
+    """
 
 
 def _cosecant(function: Any) -> Any:
@@ -80,9 +83,10 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
 
 
 def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
-    """Return whether a formula is nearly zero at a few points where the formulas of ``domain`` are nonnegative.
+    """Return whether a formula may be zero everywhere: it is nearly zero at random points, in double precision.
 
-    The test skips proofs that cannot succeed. A wrong False can only lose a proof; a wrong True only costs time.
+    Only points count at which the formulas of ``domain`` are nonnegative. The test skips proofs that cannot succeed. A
+    wrong False can only lose a proof; a wrong True only costs time.
     """
     source, differences = Random(11), 0
     leaves = sorted(formula.free_symbols.union(*(each.free_symbols for each in domain)), key=str)

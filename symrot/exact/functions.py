@@ -34,6 +34,8 @@ TRIGONOMETRIC = {
 def is_function_of_time(node: Expr) -> bool:
     """Return whether a node of an expression is a function of time, its derivative, or a matrix entry.
 
+    Such a node is a free real number, as a symbol is. Other nodes are functions that exact decisions do not know.
+
     Raises
     ------
     InputError

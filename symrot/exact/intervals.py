@@ -117,7 +117,7 @@ def surely_nonnegative_number(number: Expr) -> bool:
 
 
 def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
-    """Return whether a formula is proven to be real and not negative at a point."""
+    """Return whether a formula is proven to be real and not negative at the point ``values`` (symbol -> value)."""
     held = enclosure(formula, values)
     return held is not None and bool(held.a >= 0)
 

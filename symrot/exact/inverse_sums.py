@@ -34,22 +34,22 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a polynomial to be zero: all ``numerators``, polynomials of ``ring``, are zero."""
+    """A sufficient condition for a polynomial to be zero: polynomials of another ``ring`` (``numerators``) are zero.
+
+    A lift of ``asin(x) + acos(x) - pi/2`` says that its sine is 0 and its cosine 1; asin and acos do not occur in it.
+    """
 
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a polynomial of the ring is proven to be zero, such as the numerator of left - right.
-
-    The proof uses the relations of the ring, or shows that one factor of the polynomial is zero.
-    """
+    """Return whether the polynomial ``numerator`` of the ring is proven to be zero; see :func:`proof`."""
     return proof(ring, numerator) is not None
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that a polynomial of the ring is zero, such as the numerator of left - right.
+    """Prove that the polynomial ``numerator`` of the ring, such as the numerator of left - right, is zero.
 
     Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
     relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
@@ -67,8 +67,9 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which suffices to make a factor of a polynomial (``numerator``) zero.
+    """Yield conditions (:class:`Lift`), each of which suffices to make a factor of the polynomial ``numerator`` zero.
 
+    They are conditions on sines, cosines or exponentials of a factor that contains inverse functions or logarithms.
     With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
@@ -98,9 +99,10 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof, computed in the polynomial rings ``rings``, that an expression is zero under two kinds of conditions.
+    """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
 
-    The formulas ``nonnegative`` must be nonnegative, and the formulas ``positive`` positive.
+    The proof computes in the polynomial ``rings``. So ``asin(sin(x)) - x`` is zero where pi/2 - x and pi/2 + x are >=
+    0.
     """
 
     nonnegative: tuple[Expr, ...]
@@ -170,7 +172,7 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 
 
 def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
-    """Return formulas that are nonnegative where an inverse function has values from ``low`` to ``high``."""
+    """Return formulas of the argument ``inner`` that are nonnegative where the inverse function lies in [low, high]."""
     function, least, most = _PRINCIPAL[type(inner)]
     sign = -1 if isinstance(inner, acos) else 1  # acos decreases
     ends = []
@@ -182,9 +184,10 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` under conditions, if ``y cos w = x sin w`` is proven; otherwise None.
+    """Return a proof that ``atan2(y, x) = w`` wherever r = x cos w + y sin w is positive; None if there is none.
 
-    The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
+    ``leaf`` is the call of atan2 and ``angle`` is w. The proof requires ``y cos w = x sin w``; then y = r sin w and x =
+    r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
@@ -227,7 +230,7 @@ def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> 
 
 
 def _square(formula: Expr) -> Expr | None:
-    """Return the square of a square root or an absolute value; None for any other formula."""
+    """Return u for a square root sqrt(u), u^2 for an absolute value |u|, and None for any other formula."""
     if formula.is_Pow and formula.exp == Rational(1, 2):
         return formula.base
     return formula.args[0] ** 2 if isinstance(formula, Abs) else None
@@ -244,7 +247,11 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a polynomial as pairs (inverse function or pi, rational factor) whose products add up to it, or None."""
+    """Return a polynomial as a sum of multiples of inverse functions and pi: pairs (function or pi, rational factor).
+
+    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1). Return None for any other polynomial. ``names`` maps the numbers
+    of variables to functions.
+    """
     terms = []
     for mono, coefficient in factor.items():
         places = [number for number, power in enumerate(mono) if power]
@@ -256,7 +263,11 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether a sum of inverse functions lies strictly between ``-period * pi`` and ``period * pi``."""
+    """Return whether a sum of multiples of inverse functions lies strictly between -p pi and p pi, p = ``period``.
+
+    ``terms`` holds pairs (inverse function or pi, factor). The proof uses the ranges of the functions; False means that
+    they do not suffice.
+    """
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True
     for leaf, coefficient in terms:
@@ -281,6 +292,6 @@ def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
 
 
 def _fraction(end: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval as a fraction."""
+    """Return an endpoint of an mpmath interval as an exact fraction."""
     sign, mantissa, power, _ = end._mpi_[0]
     return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)

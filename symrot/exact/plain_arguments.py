@@ -29,10 +29,11 @@ MOST_COMPARED = 8
 def with_plain_arguments(
     formulas: Sequence[Expr], hypotheses: Sequence[Expr] = (), domain: Sequence[Expr] = ()
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
-    """Return formulas with the arguments of functions in normal form, and the rings in which these were computed.
+    """Return (formulas, rings): the formulas with all arguments of functions in normal form.
 
-    The results equal the formulas passed in wherever no divisor of these rings is zero. The rings are empty if no
-    argument contains a function, a root or a divisor.
+    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``. The results equal the formulas passed in wherever no divisor of the
+    rings, in which the normal forms were computed, is zero. There are no rings if no argument contains a function, a
+    root or a divisor. ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
     """
     formulas, rings = list(formulas), []
     for level in range(MOST_LEVELS):
@@ -49,9 +50,9 @@ def with_plain_arguments(
 
 
 def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return the normal form of each argument, and the polynomial rings in which equal arguments were proven equal.
+    """Return (forms, rings): for each argument its normal form, the same form for arguments that are proven equal.
 
-    Arguments that are proven equal get the same normal form.
+    The rings are those in which such proofs compute.
     """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
@@ -69,9 +70,10 @@ def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, 
 def proof_by_arguments(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` with all arguments of functions in normal form.
+    """Prove ``left = right`` after all arguments of functions are replaced by their normal forms.
 
-    Return the polynomial rings in which the proof computes, or None if no proof was found.
+    Return the polynomial rings in which the proof computes, or None if no proof was found or no argument changes.
+    ``hypotheses`` and ``domain`` are those of :func:`with_plain_arguments`.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
     if (shorter, other) == (left, right):
@@ -86,7 +88,10 @@ def _functions(formulas: Sequence[Expr]) -> set[Expr]:
 
 
 def _level(node: Expr) -> int:
-    """Return how deeply functions are nested in the arguments of a function."""
+    """Return how many functions are nested inside the arguments of the function ``node``.
+
+    It is 0 for sin(x), and 1 for sin(cos(x)).
+    """
     return max(map(_depth, node.args))
 
 
@@ -95,7 +100,7 @@ def _depth(formula: Expr) -> int:
 
 
 def _is_compound(argument: Expr) -> bool:
-    """Return whether an argument contains a function, a root or a divisor."""
+    """Return whether an argument contains a function, a root or a divisor, so that a normal form may shorten it."""
     return bool(argument.atoms(*FUNCTIONS)) or any(
         not (power.exp.is_Integer and power.exp > 0) for power in argument.atoms(Pow)
     )

@@ -24,5 +24,8 @@ class _Printer(StrPrinter):  # type: ignore[misc]
 
 
 def as_text(value: Any) -> str:
-    """Return a SymPy value as text in the language of claims, such as ``diff(phi(t), t)`` for a derivative."""
+    """Return a SymPy value as text in the language of claims, which the reader of claims can read back.
+
+    A derivative is written ``diff(phi(t), t)``.
+    """
     return str(_Printer().doprint(value))

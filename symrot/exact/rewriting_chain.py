@@ -24,10 +24,10 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, and the reason why it equals the expression before it in the chain.
+    """One expression of a chain and the ``reason`` why it equals the expression before it.
 
-    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` holds pairs
-    (polynomial, expression that is zero by the hypotheses); the product of each pair was subtracted.
+    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` holds pairs (polynomial,
+    expression that is zero by the hypotheses); the product of each pair was subtracted.
     """
 
     expression: Expr
@@ -38,7 +38,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Chain:
-    """The chain of equal expressions from left to right for one matrix entry, or for a scalar.
+    """The chain of equal expressions from left to right for a scalar, or for one ``entry`` of a matrix.
 
     The entry is (row, column), counted from 1; None for a scalar.
     """
@@ -86,7 +86,10 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield a chain from its end to its start; each reason stays between the two expressions that it explains."""
+    """Yield the chain ``way``, which leads from ``start`` to its last expression, from there back to ``start``.
+
+    Each reason stays between the two expressions that it explains.
+    """
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)
@@ -144,7 +147,10 @@ def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
 
 
 def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
-    """Return a numerator over the denominator of another fraction, whose factors are not multiplied out."""
+    """Return ``numerator`` over the denominator of ``value`` as an expression.
+
+    The factors of the denominator are not multiplied out.
+    """
     below = [_plain(ring, ring.ratios.factors[number]) ** power for number, power in value.factors]
     return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)
 

@@ -27,7 +27,10 @@ Constraint = tuple[int, frozenset[int]]
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a reduced numerator is zero for all signs that its absolute values can have.
+    """Return whether a numerator is zero for all signs that the absolute values in it can have.
+
+    ``numerator`` is a polynomial of the ring in normal form. In ``|k| |m| - k m`` next to ``sqrt(k m)``, k and m have
+    equal signs, and both cases give zero.
 
     Notes
     -----
@@ -49,7 +52,7 @@ def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement]:
-    """Return the absolute values in a numerator: number of the variable -> polynomial f of ``|f|``."""
+    """Return the absolute values ``|f|`` in a numerator: a map from the index of their variable to the polynomial f."""
     used = {place for mono in numerator for place, power in enumerate(mono) if power}
     absolute = {place: root for root, place in ring.roots.items() if isinstance(root.expression, Abs)}
     insides = {}
@@ -62,7 +65,11 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
-    """Yield conditions on the signs of polynomials, which follow because no radicand of a square root is negative."""
+    """Yield conditions (sign, variables): the product of the signs of these polynomials f is ``sign``.
+
+    They follow because no radicand of a square root is negative: sqrt(k m) gives (1, {k, m}). ``insides`` maps the
+    variable of each ``|f|`` to f.
+    """
     radicands = [
         ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
     ]

@@ -40,7 +40,7 @@ class _Boxes(NamedTuple):
     high: Floats
 
     def around(self, axis: int, value: Any) -> NDArray[np.bool_]:
-        """Return, for each triangle, whether its range along an axis contains a value."""
+        """Return, for each triangle, whether its range along ``axis`` (0, 1 or 2) contains ``value``."""
         within: NDArray[np.bool_] = self.low[axis] <= value
         within &= self.high[axis] >= value
         return within

@@ -221,10 +221,10 @@ def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fractio
 
 
 def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
-    """Return mass, centre of mass, tensor and relative error.
+    """Return mass, centre of mass, tensor and relative error, from the moments of a body.
 
-    ``amount`` is the total mass, kg, if it is given instead of a density. Return None if the error is too large or the
-    mass is not positive.
+    ``amount`` is the total mass, kg, if it is given instead of a density; ``exact`` says whether the moments have no
+    error. Return None if the error is too large or the mass is not positive.
     """
     (mass, mass_error), first = body.mass, body.first
     if mass <= mass_error:
@@ -255,7 +255,11 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
 
 
 def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
-    """Raise InputError if the volume of a mesh is exactly zero, or negative by more than the bound of its error."""
+    """Raise InputError if a mesh encloses no volume: exactly zero, or negative by more than the bound of its error.
+
+    ``moments`` has the volume in the file's unit of length, ``unit`` m. A negative volume means normals that point
+    inwards.
+    """
     volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
     if volume == 0 and error == 0:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")

@@ -24,7 +24,7 @@ class Angles(NamedTuple):
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the exact angle that a number in the file stands for."""
+        """Return the exact angle for the number ``value`` of a file, which is in degrees or rad."""
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 
@@ -38,7 +38,10 @@ def _elementary(axis: int, angle: Angle) -> Tensor:
 
 
 def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation by roll, pitch and yaw: about the fixed axes x, y, z, in this order."""
+    """Return the rotation matrix of the angles (roll, pitch, yaw): about the fixed axes x, y, z, in this order.
+
+    ``angles`` says whether they are in degrees.
+    """
     roll, pitch, yaw = map(angles.angle, values)
     return multiply(_elementary(2, yaw), multiply(_elementary(1, pitch), _elementary(0, roll)))
 
@@ -63,7 +66,10 @@ def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_euler(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation by Euler angles; an axis in lower case is a moving axis, in upper case a fixed axis."""
+    """Return the rotation matrix of three Euler angles; the sequence and the unit are those of ``angles``.
+
+    An axis in lower case is a moving axis, in upper case a fixed axis.
+    """
     total = matrix(IDENTITY)
     for letter, value in zip(angles.sequence, values, strict=True):
         step = _elementary("xyz".index(letter.lower()), angles.angle(value))
@@ -85,7 +91,7 @@ def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_z_axis(values: Numbers, angles: Angles) -> Tensor:
-    """Return the smallest rotation that carries the z axis into a vector."""
+    """Return the matrix of the smallest rotation that carries the z axis into the direction ``values``."""
     x, y, z = _direction(values, "a z axis that is not zero")
     if x == y == 0:
         return of_quaternion(
@@ -111,7 +117,7 @@ ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
 
 
 def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw, rad, of a rotation."""
+    """Return roll, pitch and yaw, rad, of a rotation matrix; at gimbal lock (pitch 90 or -90 degrees) roll is 0."""
     m = [[float(entry) for entry in row] for row in rotation]
     across = hypot(m[0][0], m[1][0])
     if across < 1e-12:  # gimbal lock: only the sum or difference of roll and yaw matters
@@ -120,7 +126,7 @@ def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
 
 
 def quaternion_of(rotation: Tensor) -> tuple[float, float, float, float]:
-    """Return the unit quaternion of a rotation, scalar first, with a scalar that is not negative."""
+    """Return the unit quaternion of a rotation matrix, scalar first, with a scalar that is not negative."""
     m = [[float(entry) for entry in row] for row in rotation]
     trace = m[0][0] + m[1][1] + m[2][2]
     squares = [1 + trace, *(1 + 2 * m[k][k] - trace for k in range(3))]  # 4 q_k^2

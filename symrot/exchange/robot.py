@@ -57,7 +57,7 @@ class Format(NamedTuple):
     read: Callable[[Element, Element], Inertial]
 
     def elements(self, root: Element) -> list[Element]:
-        """Return the elements of all links.
+        """Return the elements of all links in the XML tree ``root``.
 
         Elements with the same tag at other places, as in plugins, are not links.
         """

@@ -31,7 +31,7 @@ class Surface(NamedTuple):
     triangles: Indices
 
     def flipped(self) -> "Surface":
-        """Return the surface with the opposite orientation."""
+        """Return the surface with the opposite orientation: the corners of each triangle in reverse order."""
         return Surface(self.vertices, np.ascontiguousarray(self.triangles[:, ::-1]))
 
 
@@ -58,7 +58,7 @@ def merge(vertices: Floats, triangles: Indices) -> Surface:
 
 
 def _hashes(points: Floats) -> NDArray[np.uint64]:
-    """Return a hash of the coordinates of each point."""
+    """Return a hash of the coordinates of each point, so that equal points can be detected by sorting."""
     bits = points.view(np.uint64)
     mixed = np.zeros(len(points), np.uint64)
     for column, mixer in enumerate(_MIXERS):

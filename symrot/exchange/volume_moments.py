@@ -92,7 +92,8 @@ def _columns(points: NDArray[Any]) -> Corner:
 def _cross(left: Corner, right: Corner, sign: int = -1) -> Corner:
     """Return the cross products of arrays of vectors; with ``sign`` = 1 their terms are added instead of subtracted.
 
-    For arrays of magnitudes, ``sign`` = 1 gives the sums of the magnitudes of the terms, which bound rounding errors.
+    ``left`` and ``right`` have an array for each component. For arrays of magnitudes, ``sign`` = 1 gives the sums of
+    the magnitudes of the terms, which bound rounding errors.
     """
     x, y, z = (left[j] * right[k] + sign * (left[k] * right[j]) for j, k in ((1, 2), (2, 0), (0, 1)))
     return x, y, z

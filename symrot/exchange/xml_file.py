@@ -67,9 +67,10 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
 
 
 def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
-    """Return the place of an element inside ``<owner name="name">``, and whether the element is present.
+    """Return the place of the element ``element`` inside ``<owner name="name">``, and whether it is present.
 
-    If the element is absent, the place is empty and directly behind the start tag of the owner.
+    ``content`` are the bytes of the file. If the element is absent, the place is empty and directly behind the start
+    tag of the owner, so that a new element can be inserted there.
     """
     parser = expat.ParserCreate()
     stack: list[tuple[str, str]] = []

@@ -243,11 +243,10 @@ def _si(quantity: Quantity, number: str) -> Expr:
 
 
 def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
-    """Choose random numbers for the quantities, and return pairs (quantity, number).
+    """Choose random numbers for the quantities, and return pairs (quantity, number); ``source`` is the generator.
 
-    Many choices are tried; the one with the shortest answers is returned.
-
-    Choices for which ``problem.fits`` is false, such as lengths that contradict each other, are skipped.
+    Many choices are tried; the one with the shortest answers is returned. Choices for which ``problem.fits`` is false,
+    such as lengths that contradict each other, are skipped.
     """
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
     for _ in range(DRAWS):

@@ -75,7 +75,7 @@ def order_of_rotations() -> Picture:
 
 
 def _brick(picture: Picture, view: View, matrix: Floats) -> None:
-    """Draw a box with its axes in a given attitude; only the faces that point toward the viewer are drawn."""
+    """Draw a box in the attitude ``matrix`` with its axes; only the faces that point toward the viewer are drawn."""
     half = np.array([0.9, 0.55, 0.22])
     for i in range(3):
         for sign in (1.0, -1.0):
@@ -95,7 +95,7 @@ def _brick(picture: Picture, view: View, matrix: Floats) -> None:
 
 
 def intermediate_frames(sequence: str, angles: Sequence[float]) -> list[Floats]:
-    """Return four frames: before, between and after the three rotations of an intrinsic sequence.
+    """Return four frames: before the first of the three rotations of an intrinsic sequence, and after each of them.
 
     Each frame is a matrix whose columns are its axes; ``angles`` are in degrees.
     """
@@ -104,7 +104,10 @@ def intermediate_frames(sequence: str, angles: Sequence[float]) -> list[Floats]:
 
 
 def _three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[str], azimuth: float) -> Picture:
-    """Draw the three rotations of an intrinsic sequence, one in each panel; angles in degrees."""
+    """Draw the three rotations of an intrinsic sequence, one in each panel; angles in degrees.
+
+    ``letters`` are the labels of the angles; ``azimuth`` is the direction from which the frames are seen, in degrees.
+    """
     picture, frames = Picture(), intermediate_frames(sequence, angles)
     for n in range(3):
         view = View(azimuth, elevation=25, scale=82, origin=(220.0 * n, 0.0))

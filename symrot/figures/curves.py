@@ -30,7 +30,10 @@ def basis(normal: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def circle(centre: ArrayLike, normal: ArrayLike, radius: float, angles: Floats = TURN) -> Floats:
-    """Return points of a circle in space, shape (n, 3), at angles in rad; ``normal`` is perpendicular to its plane."""
+    """Return points of a circle in space, shape (n, 3), around ``centre``, one for each of ``angles``, rad.
+
+    ``normal`` is perpendicular to the plane of the circle.
+    """
     first, second = basis(normal)
     points: Floats = np.asarray(centre) + radius * (np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second))
     return points
@@ -47,7 +50,10 @@ def rotated(point: ArrayLike, axis: ArrayLike, angle: float, count: int = 41) ->
 
 
 def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLike = (0, 0, 0)) -> Floats:
-    """Return points of the shorter arc from one direction to another, shape (n, 3), on a circle about ``centre``."""
+    """Return points of the shorter arc from the direction ``start`` to the direction ``end``, shape (n, 3).
+
+    The arc belongs to the circle of the given radius about ``centre``.
+    """
     a, b = unit(start), unit(end)
     across = unit(b - a * (a @ b))
     angles = np.linspace(0.0, float(np.arccos(np.clip(a @ b, -1, 1))), 41)
@@ -56,7 +62,7 @@ def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLi
 
 
 def outline(shape: Floats, view: View) -> Floats:
-    """Return the visible outline of the ellipsoid ``x · shape x = 1``, shape (n, 3).
+    """Return the outline of the ellipsoid ``x · shape x = 1`` as ``view`` shows it: points in space, shape (n, 3).
 
     At its points the normal of the ellipsoid is perpendicular to the line of sight.
     """
@@ -78,7 +84,7 @@ def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
 
 
 def turning(start: ArrayLike, end: ArrayLike) -> Floats:
-    """Return the unit quaternion of the shortest rotation that maps one direction to another."""
+    """Return the unit quaternion of the shortest rotation that maps the direction ``start`` to ``end``."""
     a, b = unit(start), unit(end)
     angle = float(np.arccos(np.clip(a @ b, -1, 1)))
     return np.asarray(axis_angle_to_quaternion(unit(np.cross(a, b)), angle), dtype=float)
@@ -87,7 +93,8 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
     """Return points of the rim of a cone with its apex at the origin, and the two lines that form its visible outline.
 
-    The half angle is in rad. There are no such lines (an empty list) if the line of sight lies inside the cone.
+    ``length`` is the length of its lines, ``half_angle`` is in rad. There are no two lines (an empty list) if the line
+    of sight lies inside the cone.
     """
     n, radius = unit(axis), length * np.sin(half_angle)
     rim = circle(length * np.cos(half_angle) * n, n, radius)
@@ -105,5 +112,8 @@ def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple
 
 
 def frame(matrix: Floats, length: float = 1.0) -> list[tuple[Floats, Floats]]:
-    """Return the axes of a frame as three lines from the origin; the columns of ``matrix`` are their directions."""
+    """Return the axes of a frame as three lines from the origin, each (start, end) with the given length.
+
+    The columns of ``matrix`` are their directions.
+    """
     return [(np.zeros(3), length * matrix[:, i]) for i in range(3)]

@@ -62,7 +62,10 @@ def rolling_ellipsoid() -> tuple[Floats, Trajectory]:
 
 
 def contact_ellipsoid(moments: Floats, motion: Trajectory, place: int) -> Floats:
-    """Return the matrix S of the energy ellipsoid ``x · S x = 1`` in space axes, at sample ``place`` of a motion."""
+    """Return the matrix S of the energy ellipsoid ``x · S x = 1`` in space axes, at sample ``place`` of a motion.
+
+    ``moments`` are the principal moments of the body; the angular velocity is a point of the ellipsoid.
+    """
     dcm = motion.dcm[place]
     shape: Floats = dcm @ np.diag(moments) @ dcm.T / (moments @ motion.omega[place] ** 2)
     return shape
@@ -173,7 +176,10 @@ def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats,
 
 
 def _cones(moments: tuple[float, float], nutation: float, view: View) -> Picture:
-    """Draw the body cone and the space cone of a free symmetric body, which touch along omega."""
+    """Draw the body cone and the space cone of a free symmetric body, which touch along omega.
+
+    The arguments ``moments`` and ``nutation`` are those of :func:`cone_vectors`.
+    """
     momentum, omega, axis = cone_vectors(moments, nutation)
     picture = Picture()
     for direction, colour, label in ((momentum, "green", "space cone"), (axis, "blue", "body cone")):
@@ -214,7 +220,7 @@ def rates() -> Picture:
 
 
 def _components(times: Floats, omega: Floats, at: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Picture:
-    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the time."""
+    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the span."""
     picture = Picture()
     limit = 1.12 * float(np.abs(omega).max())
     axes = Axes(picture, (times[0], times[-1]), (-limit, limit), (420, 200))

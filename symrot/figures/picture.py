@@ -64,7 +64,10 @@ class Picture:
         self, view: View | Plane, points: Points, style: str = "ink", visible: NDArray[np.bool_] | None = None,
         closed: bool = False, hidden: str = "dashed",
     ) -> None:  # fmt: skip
-        """Draw a line through points, with the style ``hidden`` for the points at which ``visible`` is false."""
+        """Draw a line through points, with the style ``hidden`` for the points at which ``visible`` is false.
+
+        If ``closed``, the last point is joined to the first.
+        """
         places = view.project(points)
         if visible is None:
             self._path(places, style, closed)

@@ -40,9 +40,10 @@ class Axes:
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve with a label at its right end, or above it at the fraction ``at`` of its length if ``at`` < 1.
+        """Draw a curve through the points (x, y) with a label at its right end.
 
-        Points above or below the rectangle are left out.
+        If ``at`` is less than 1, the label is above the curve at this fraction of its length. Points above or below the
+        rectangle are left out.
         """
         inside = (y >= self.y[0]) & (y <= self.y[1])
         starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
@@ -54,13 +55,13 @@ class Axes:
             self.picture.label(self.plane, (x[place], y[place]), label, (16, 0) if at == 1.0 else (6, -12))
 
     def level(self, y: float, label: str = "", style: str = "soft dashed") -> None:
-        """Draw a horizontal line with a label at its right end."""
+        """Draw a horizontal line at the height ``y`` with a label at its right end."""
         self.picture.curve(self.plane, np.array([[self.x[0], y], [self.x[1], y]]), style)
         if label:
             self.picture.label(self.plane, (self.x[1], y), label, (16, 0))
 
     def upright(self, x: float, label: str = "", low: float | None = None, high: float | None = None) -> None:
-        """Draw a vertical line with a label below it."""
+        """Draw a vertical line at ``x``, from ``low`` to ``high`` or over the whole height, with a label below it."""
         bottom, top = self.y[0] if low is None else low, self.y[1] if high is None else high
         self.picture.curve(self.plane, np.array([[x, bottom], [x, top]]), "soft dashed")
         if label:

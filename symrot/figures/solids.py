@@ -153,7 +153,7 @@ def hull(places: Floats) -> Floats:
 
 
 def draw_solid(name: str) -> Picture:
-    """Draw a standard solid with the axes of its coordinates and its centre of mass."""
+    """Draw the standard solid ``name``, such as ``cone``, with the axes of its coordinates and its centre of mass."""
     body, picture, view = sized(name), Picture(), VIEW
     surface = surface_of(body)
     points = np.concatenate([*surface.edges, surface.triangles.reshape(-1, 3)])

@@ -28,9 +28,10 @@ START = np.radians(40.0)  # nutation at the start, a turning point
 
 
 def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float, float] = (A, C)) -> Trajectory:
-    """Return the motion of a heavy symmetric top with the weight 1 N and the centre of mass 1 m from the tip.
+    """Return the motion, at ``times``, of a heavy symmetric top with weight 1 N and centre of mass 1 m from the tip.
 
-    It starts from the ZXZ angles (0, nutation, 0), rad, with the angular velocity ``omega``, rad/s.
+    It starts from the ZXZ angles (0, nutation, 0), rad, with the angular velocity ``omega``, rad/s. ``moments`` are
+    those across and along its axis, about the tip.
     """
     scene = {
         "schema": 1,
@@ -69,7 +70,11 @@ def effective_potential() -> Callable[..., Any]:
 
 
 def _potential_and_path(precession: float) -> Picture:
-    """Draw the effective potential with its turning points, and the path of the top's axis on a sphere."""
+    """Draw the effective potential with its turning points, and the path of the top's axis on a sphere.
+
+    ``precession`` is the initial rate of precession, rad/s; the path has loops, cusps or waves if it is negative, zero
+    or positive.
+    """
     picture = Picture()
     motion = top_motion((0.0, precession * np.sin(START), SPIN), START, np.linspace(0.0, 13.6, 681))
     axis = motion.dcm[:, :, 2]

@@ -60,7 +60,7 @@ class View:
 
 @dataclass(frozen=True)
 class Plane:
-    """A view of a plane, with x to the right and y upward, each with its own scale."""
+    """A view of a plane in a picture, with x to the right and y upward, each with its own scale."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)

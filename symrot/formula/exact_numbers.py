@@ -42,7 +42,10 @@ EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
 
 def show(value: object, limit: int = 60) -> str:
-    """Return the text of ``value`` for an error message: as the user wrote it, but at most one line."""
+    """Return the text of ``value`` for an error message, as the user wrote it.
+
+    A text of more than ``limit`` characters is cut.
+    """
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -67,7 +70,10 @@ def show(value: object, limit: int = 60) -> str:
 
 
 def rounded(value: Fraction) -> Fraction:
-    """Return a number rounded to an integer times a power of two, with a relative error below 2^-320."""
+    """Return a number rounded to an integer times a power of two, with a relative error below 2^-320.
+
+    Rounding keeps the fractions of irrational numbers short.
+    """
     shift = BITS + 2 - value.numerator.bit_length() + value.denominator.bit_length()
     scaled = value.numerator << shift if shift > 0 else value.numerator >> -shift
     quotient = scaled // value.denominator
@@ -161,7 +167,10 @@ def without_turns(value: Fraction) -> Fraction:
 
 
 def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
-    """Return sin(value + quarter_turns * pi/2), ``value`` in rad, with an error below 2^-300."""
+    """Return sin(value + quarter_turns * pi/2), with ``value`` in rad, with an error below 2^-300.
+
+    One quarter turn gives the cosine.
+    """
     if not value:
         return Fraction((0, 1, 0, -1)[quarter_turns % 4])
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
@@ -329,7 +338,10 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number in the form ``rational + half_turns * pi``; raise InputError if the value is not a number."""
+    """Return a number in the form ``rational + half_turns * pi``; raise InputError if the value is not a number.
+
+    ``where`` (file and key) and ``expect`` (what is expected) are texts for the message.
+    """
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
@@ -392,10 +404,10 @@ def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
 
 
 def read_angle(value: object, degrees: bool = False, where: str = "", expect: str = EXPECTATION) -> Angle:
-    """Return an angle given in rad or in degrees; raise InputError as :func:`read` does.
+    """Return an angle given in rad, or in degrees if ``degrees`` is true.
 
-    A rational multiple of pi, such as any rational number of degrees, stays exact, so that ``cos("pi/2")`` is exactly
-    0.
+    Raise InputError as :func:`read` does, with the texts ``where`` and ``expect``. A rational multiple of pi, such as
+    any rational number of degrees, stays exact, so that ``cos("pi/2")`` is exactly 0.
     """
     angle = _read(value, where, expect)
     if not degrees:

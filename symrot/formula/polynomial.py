@@ -92,10 +92,9 @@ class Polynomial:
         return power
 
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
-        """Return the coefficients of the polynomial in the generators ``names``.
+        """Return the coefficients of the polynomial in the generators ``names``, by exponents.
 
-        A mapping from exponents to coefficients. With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0):
-        5}``.
+        With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
         """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
@@ -106,9 +105,9 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative with respect to a coordinate.
+        """Return the partial derivative by the coordinate or angle ``name``.
 
-        If the coordinate is an angle, the generators that represent its cosine and sine are differentiated too.
+        If it is an angle, the generators that represent its cosine and sine are differentiated too.
         """
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
@@ -181,9 +180,9 @@ def sine(angle: str) -> Polynomial:
 
 
 def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
-    """Return the polynomial in which ``cos^2`` of the angles is replaced by ``1 - sin^2``.
+    """Return an equal polynomial in which ``cos^2`` of each of the ``angles`` is replaced by ``1 - sin^2``.
 
-    In the result no cosine has a power above 1.
+    In the result no cosine has a power above 1, so that equal formulas give equal polynomials.
     """
     for angle in angles:
         reduced = constant(0)
@@ -194,9 +193,9 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 
 
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
-    """Return a sort key for monomials.
+    """Return a sort key for monomials in the generators ``names``.
 
-    Their exponents of the generators ``names``, so that the order is lexicographic.
+    It is the tuple of exponents, so that the order is lexicographic.
     """
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 
@@ -211,7 +210,7 @@ def _term_quotient(term: Term, divisor: Term) -> Polynomial | None:
 
 
 def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | None:
-    """Return the quotient of two polynomials, computed by long division, or None if it is not a polynomial."""
+    """Return ``dividend/divisor`` by long division, or None if the quotient is not a polynomial."""
     order = _exponents(sorted({name for monomial in (*dividend.terms, *divisor.terms) for name, _ in monomial}))
     highest = max(divisor.terms.items(), key=order)
     quotient, rest = constant(0), dividend

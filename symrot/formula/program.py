@@ -106,9 +106,10 @@ class Program:
         number: Callable[[Fraction], Any] = float,
         only: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return the values of the outputs, by name, for the values of the inputs, by name.
+        """Return the values of the outputs, by name, for the ``values`` of the inputs, by name.
 
-        Values are floats, arrays or Fractions (with ``number=Fraction``). If ``only`` is given, only these outputs and
+        Values are floats, arrays or Fractions (with ``number=Fraction``). ``functions`` gives the functions such as sin
+        for this kind of number, and ``number`` converts constants to it. If ``only`` is given, only these outputs and
         the temporaries that they need are computed.
         """
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
@@ -151,7 +152,7 @@ class Program:
 def node_to_json(node: Node) -> list[Any]:
     """Return a formula as nested lists for JSON, with numbers as exact text.
 
-    ``["*", ["number", "1/2"], ["symbol", "q0"]]``.
+    The formula ``q0/2`` is ``["/", ["symbol", "q0"], ["number", "2"]]``.
     """
     kind = node[0]
     if kind == "number":

@@ -159,9 +159,9 @@ class _Reader:
         return Fraction(token)
 
     def power(self, position: int) -> int:
-        """Return the exponent that starts at token ``position``.
+        """Read the exponent that comes next in the text, and return it.
 
-        A whole number, possibly with a sign or in brackets.
+        It is a whole number, possibly with a sign or in brackets.
         """
         brackets = self.peek() == "("
         if brackets:
@@ -219,7 +219,7 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
 def children(node: Node) -> tuple[Node, ...]:
     """Return the operands of the operation at the root of a formula tree.
 
-    (a, b) for ``("+", a, b)``, none for a symbol.
+    They are (a, b) for ``("+", a, b)``; a number or a symbol has none.
     """
     kind = node[0]
     if kind in ("number", "symbol"):

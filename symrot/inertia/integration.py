@@ -161,9 +161,9 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of a formula's degree in x, y, z without expanding it.
+    """Return an upper bound of a formula's degree in x, y, z, without expanding it; a high degree is refused early.
 
-    Raise ValueError if it calls a function.
+    A formula that calls a function is no polynomial and raises ValueError.
     """
     kind = node[0]
     if kind == "number":
@@ -243,9 +243,11 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 def exact_moments(
     shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
-    """Return the numeric moments of a shape with a polynomial density, in kg, kg m, kg m^2.
+    """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2.
 
-    ``dimensions`` come from :func:`symrot.inertia.shapes.check_dimensions`; pi is correct to 2^-320.
+    They are the integrals of the density times 1, x_i and x_i x_j. ``dimensions`` come from
+    :func:`symrot.inertia.shapes.check_dimensions`; pi is correct to 2^-320. ``source`` is the density as the user wrote
+    it and ``where`` its place, for errors.
     """
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)

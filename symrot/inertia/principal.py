@@ -88,7 +88,10 @@ def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
 
 
 def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
-    """Rotate axes p and q, in place, by the smallest angle that makes ``work[p][q]`` zero."""
+    """Rotate the axes p and q by the smallest angle that makes ``work[p][q]`` zero: one step of Jacobi's method.
+
+    The tensor ``work`` and the columns ``vectors``, its axes, are changed in place.
+    """
     cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the rotation angle
     tangent = 1 / (abs(cotangent) + (cotangent * cotangent + 1).sqrt())
     tangent = tangent if cotangent >= 0 else -tangent
@@ -196,7 +199,7 @@ def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
 
 
 def require_admissible(body: Principal, where: str = "") -> None:
-    """Raise InputError unless some distribution of mass has these principal moments.
+    """Raise InputError unless some distribution of mass has the principal moments of ``body``.
 
     No moment of inertia may be negative or exceed the sum of the other two. It may equal this sum (a flat body), and
     one moment may be zero (a needle); the tolerance is 2^-200.
@@ -216,7 +219,7 @@ def require_admissible(body: Principal, where: str = "") -> None:
 
 
 def why_not_propagable(body: Principal) -> str:
-    """Return the reason why Euler's equations do not determine the rates of omega, or an empty text if they do."""
+    """Return why Euler's equations do not determine the rates of omega, such as a moment of zero; empty if they do."""
     if max(body.moments) == 0:
         return "a point has no moments of inertia, so no torque determines its angular acceleration"
     if body.needle:

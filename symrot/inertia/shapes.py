@@ -48,7 +48,7 @@ class Coordinate(NamedTuple):
 
     @property
     def angle(self) -> bool:
-        """Whether the coordinate is an angle; the map uses angles only inside ``cos`` and ``sin``."""
+        """Whether the coordinate is an angle: it has pi in its limits, and occurs only inside ``cos`` and ``sin``."""
         return "pi" in self.upper
 
 
@@ -96,9 +96,9 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, as a function of three fractions.
+    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, for its map.
 
-    The fraction f_1 is 0 at corner 1 and 1 on the opposite face.
+    The formula depends on three fractions from 0 to 1; f_1 is 0 at corner 1 and 1 on the opposite face.
     """
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
@@ -215,7 +215,7 @@ def _prefix(where: str) -> str:
 
 
 def find_shape(name: object, where: str = "") -> Shape:
-    """Return the shape with this name; raise InputError, which lists all names, if there is no such shape."""
+    """Return the shape called ``name``, such as ``"cone"``; another value raises InputError, which lists all names."""
     if not isinstance(name, str) or name not in SHAPES:
         raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
@@ -252,7 +252,7 @@ def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
 
 
 def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> None:
-    """Raise InputError unless the given dimensions are exactly the dimensions of the shape."""
+    """Raise InputError unless the keys of ``dimensions`` are exactly the names of the dimensions of the shape."""
     expected = [dimension.name for dimension in shape.dimensions]
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:

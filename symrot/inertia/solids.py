@@ -110,34 +110,40 @@ class Solid:
 
     @property
     def shape(self) -> Shape:
-        """The shape of the body: map, limits, axes and origin."""
+        """The row of the table of shapes for this body: its dimensions, map, limits and axes."""
         return SHAPES[self.name]
 
     @property
     def volume(self) -> Expr:
-        """The volume of a solid, the area of a surface, or the length of a curve."""
+        """The measure of the body: the volume of a solid, the area of a surface, or the length of a curve."""
         return self.measure
 
     @cached_property
     def position(self) -> ImmutableMatrix:
-        """The map of the shape: position in m as a function of coordinates, shape (3, 1); empty for point masses."""
+        """The map of the shape: position (m), shape (3, 1), as a function of coordinates such as a radius and an angle.
+
+        It is empty for point masses.
+        """
         known = {**_CONSTANTS, **_MAP_SYMBOLS, **self.dimensions}
         return ImmutableMatrix([evaluate(parse(t), known, _FUNCTIONS, _rational) for t in self.shape.position])
 
     @cached_property
     def jacobian(self) -> Expr:
-        """The Jacobian of the map: volume, area or length per unit of the coordinates."""
+        """The Jacobian of the map :attr:`position`: volume, area or length per unit of the coordinates."""
         return _tidy(self._over(_mapped(self.name).jacobian))
 
     @cached_property
     def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
-        """The coordinates of the map, each with its lower and upper limit."""
+        """The coordinates of the map :attr:`position`, each with its lower and upper limit."""
         limits = _mapped(self.name).limits
         return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in limits)
 
     @cached_property
     def steps(self) -> tuple[Integral, ...]:
-        """The integrals behind the result: measure, mass, first moments and second moments about the origin."""
+        """The integrals that give the result: measure, mass, first moments and second moments about the origin.
+
+        It is empty for point masses.
+        """
         if not self.limits:
             return ()
         weight = self.density.xreplace(dict(zip(symbols.position, self.position, strict=True))) * self.jacobian
@@ -153,12 +159,12 @@ class Solid:
         return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in integrals)
 
     def inertia_about(self, point: Any) -> ImmutableMatrix:
-        """Return the inertia tensor about a point (m, axes of the shape), by the parallel axis theorem, kg m^2."""
+        """Return the inertia tensor, kg m^2, about a point (m, axes of the shape), by the parallel axis theorem."""
         offset = [_scalar(p) - c for p, c in zip(tensor.vector(point), self.center_of_mass, strict=True)]
         return _tidied(tensor.about_point(self.inertia, self.mass, offset))
 
     def with_mass(self, mass: Any) -> "Solid":
-        """Return the same body with its density scaled to a total mass (kg)."""
+        """Return the same body with its density scaled so that its total mass is ``mass``, kg."""
         total = _scalar(mass)
         inertia = _tidied(tensor.scale(total / self.mass, self.inertia))
         return replace(self, mass=total, density=_tidy(self.density * total / self.mass), inertia=inertia)
@@ -229,7 +235,7 @@ def _properties(
 
 
 def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return the quotient of two polynomials as an expression in lowest terms."""
+    """Return ``numerator/denominator`` as an expression in lowest terms, with ``values`` in place of the names."""
     quotient = exact_quotient(numerator, denominator)
     if quotient is not None:
         return _expression(quotient, values)
@@ -260,7 +266,10 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Parse a formula and return it as an expression; raise InputError if it uses a name that is not in ``known``."""
+    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names.
+
+    A name that is not in ``known`` raises InputError.
+    """
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -284,7 +293,10 @@ def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
 
 
 def _dimensions(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Expr]:
-    """Return an expression for each dimension of a shape: the given value, or the default symbol."""
+    """Return an expression for each number among a shape's dimensions: the user's value, or the default symbol.
+
+    A violated condition, such as ``inner < outer``, raises InputError.
+    """
     check_names(shape, {d.name: None for d in shape.dimensions} | dict(dimensions))
     numbers: dict[str, Expr] = dict(_default_dimensions(shape.name))
     for d in shape.dimensions:
@@ -316,7 +328,10 @@ def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
 
 
 def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
-    """Return a density as a polynomial in x, y, z with symbolic coefficients."""
+    """Return a user's density as a polynomial in x, y, z, whose coefficients may contain the values ``dimensions``.
+
+    A density that is no polynomial raises InputError.
+    """
     axes = {str(axis): axis for axis in symbols.position}
     if isinstance(density, str):
         formula = _formula(density, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
@@ -401,7 +416,11 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return the solid of a shape whose density is a polynomial; the integration treats its coefficients as symbols."""
+    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z.
+
+    ``values`` are its dimensions and ``measure`` its volume, area or length. The integration treats the coefficients of
+    the density as symbols.
+    """
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}
@@ -443,7 +462,10 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
 
 
 def closed_forms_text() -> str:
-    """Return the text of ``closed_forms.toml``: formulas of all uniform shapes, in the dimensions and the mass m."""
+    """Return the text of ``closed_forms.toml``: formulas of all uniform shapes, in the dimensions and the mass m.
+
+    :mod:`symrot.inertia.closed_forms` evaluates them without SymPy.
+    """
     lines = [
         "# Uniform bodies: measure (m^3, m^2, m), centre of mass (m), inertia about it (kg m^2), axes of the shape.",
         "# m is the mass (kg), lengths in m. Printed by `python -m symrot.inertia.solids`; do not edit.",

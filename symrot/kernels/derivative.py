@@ -150,7 +150,7 @@ class Derivatives:
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
         """Return the term of the chain rule for the named quantity ``symbol`` in ``expr``.
 
-        D(expr)/d(symbol) times ``slope``. ``slope`` is the derivative of the quantity by the input.
+        It is the derivative of ``expr`` by the symbol, times ``slope``, the derivative of the quantity by the input.
         """
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:

@@ -39,7 +39,7 @@ _TORQUE = argument("torque", "in", symbols.torque_b, "torque about the same poin
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of dynamics, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of dynamics: the function derives the kernel's arguments and formulas."""
     for body in _BODIES:
         yield f"euler_equations_{body}", partial(_euler_equations, f"euler_equations_{body}", body)
     for body in ("tensor", "principal"):

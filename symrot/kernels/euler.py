@@ -28,13 +28,14 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 def prefix(sequence: str) -> str:
     """Return the beginning of the names of the kernels for an Euler sequence, such as ``"euler_zxz"``.
 
-    The names for an intrinsic and an extrinsic sequence differ in more than upper and lower case.
+    For an extrinsic sequence, given in lower case, it is ``"euler_extrinsic_zxz"``: the names of files must differ in
+    more than upper and lower case.
     """
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of Euler angles, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of Euler angles: the function derives its arguments and formulas."""
     for sequence in SEQUENCES:
         for suffix, make in _KINDS.items():
             name = f"{prefix(sequence)}_{suffix}"
@@ -52,9 +53,10 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return a box of Euler angles away from gimbal lock.
+    """Return a box (angle -> range of values) of Euler angles away from gimbal lock, where rates are bounded.
 
-    The middle angle differs by at most about 1.5 rad from its best value, pi/2 or 0.
+    The middle angle differs by at most about 1.5 rad from its best value: pi/2 if the first and the last axis are
+    equal, as in ZXZ, otherwise 0.
     """
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
@@ -62,11 +64,10 @@ def _regular_box(sequence: str) -> Box:
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return (definitions, entries).
+    """Return (definitions, entries): the entries of a matrix, with symbols for products such as ``sin(phi)*cos(psi)``.
 
-    The entries of a matrix with a symbol for each product such as ``sin(phi)*cos(psi)``. Definitions are pairs (symbol,
-    product). The factors of such a product are functions of the first and of the last angle; several entries contain
-    it. In a sum, a common factor, which depends on the middle angle, is factored out.
+    Definitions are pairs (symbol, product). The factors of such a product are functions of the first and of the last
+    angle; several entries contain it. In a sum, a common factor, which depends on the middle angle, is factored out.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -171,7 +172,10 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return the formula that reduces an angle between -2 pi and 2 pi to the range [-pi, pi]."""
+    """Return the formula that adds a multiple of 2 pi to ``angle`` so that it lies in [-pi, pi].
+
+    The angle must lie between -2 pi and 2 pi.
+    """
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

@@ -23,7 +23,7 @@ _TENSOR_OUT = "inertia tensor (xx, yy, zz, xy, xz, yz), products with their minu
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of inertia, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of inertia: the function derives the kernel's arguments and formulas."""
     for name, shape in SHAPES.items():
         if shape.position:  # no kernel for separate points, whose number of inputs is not fixed
             yield f"inertia_{name}", partial(_solid, f"inertia_{name}", name)

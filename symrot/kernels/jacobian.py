@@ -23,12 +23,15 @@ BY = "_by_"
 
 
 def jacobian_name(kernel: str, variables: Sequence[str]) -> str:
-    """Return the name of a kernel with derivatives by inputs, such as ``quaternion_dcm_by_q``."""
+    """Return the name of ``kernel`` with derivatives by the inputs ``variables``, such as ``quaternion_dcm_by_q``."""
     return BY.join((kernel, *variables))
 
 
 def unit_of_quotient(above: str, below: str) -> str:
-    """Return the unit of a quotient of two quantities as text, such as ``(rad/s)/(kg m^2)``."""
+    """Return the unit of a derivative, a quotient of the units ``above`` and ``below``, such as ``(rad/s)/(kg m^2)``.
+
+    An empty ``below``, an unknown unit, gives an empty text.
+    """
     if not below:
         return ""  # a constant of a scene, whose unit the scene does not say
     if below == "1" or above == below:

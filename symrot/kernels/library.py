@@ -24,7 +24,7 @@ def kernel_names() -> tuple[str, ...]:
 
 
 def is_kernel(name: object) -> bool:
-    """Return whether a name is that of a kernel of the library, with or without derivatives."""
+    """Return whether ``name`` names a kernel of the library; ``quaternion_dcm_by_q``, with derivatives, counts too."""
     return isinstance(name, str) and name.split(BY, maxsplit=1)[0] in _table()
 
 

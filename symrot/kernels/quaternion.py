@@ -33,7 +33,7 @@ _UNIT = "unit quaternions"
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of quaternions, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of quaternions: the function derives its arguments and formulas."""
     for name, make in _KINDS.items():
         yield name, partial(make, name)
 
@@ -194,10 +194,10 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return (definitions, components) of the vector v rotated by q = (q0, u).
+    """Return (definitions, components) of the vector v rotated by the unit quaternion q = (q0, u).
 
-    ``v + q0 h + u x h`` with ``h = 2 u x v``. Definitions are pairs (symbol, formula) for the components of h. This
-    takes fewer operations than the rotation matrix.
+    The formula is ``v + q0 h + u x h`` with ``h = 2 u x v``, which takes fewer operations than the rotation matrix.
+    Definitions are pairs (symbol, formula) for the components of h.
     """
     scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

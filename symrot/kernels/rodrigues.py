@@ -21,7 +21,10 @@ _CALLED = {"rodrigues": "classical Rodrigues parameters", "mrp": "modified Rodri
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of Rodrigues parameters, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of Rodrigues parameters.
+
+    The function derives the arguments and formulas of the kernel.
+    """
     for which in (CLASSICAL, MODIFIED):
         for suffix, make in _KINDS.items():
             name = f"{which.name}_{suffix}"

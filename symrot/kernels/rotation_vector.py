@@ -24,7 +24,7 @@ _BOX = boxed(_VECTOR, -3, 3)
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of rotation vectors, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of rotation vectors: the function derives its arguments and formulas."""
     for name, make in _KINDS.items():
         yield name, partial(make, name)
 

@@ -48,7 +48,7 @@ _RANGE: dict[str, str | int] = {"mean_motion": "1/100", "weight": 100}  # larges
 
 
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
-    """Yield the name of every kernel of torques, with a function that derives its definition."""
+    """Yield (name, function) for every kernel of torques: the function derives the kernel's arguments and formulas."""
     for name in _KERNELS:
         yield name, partial(_torque, name)
 

@@ -79,9 +79,10 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the singular values in increasing order; of a set with period 2 pi, those of one period.
+        """Return the singular values in increasing order, of one period if they repeat; empty if there are none.
 
-        It is the first period (from 0 on) that contains any. Example: the set of all n pi gives (0, pi).
+        The period is the first of [0, 2 pi) and [2 pi, 4 pi) that contains any. Example: the set of all n pi gives (0,
+        pi).
         """
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
@@ -364,5 +365,8 @@ class Chart:
 
     @property
     def singular_set(self) -> SingularSet:
-        """The parameters at which the rate matrix has no inverse; they are the same in both frames."""
+        """The values of the parameters at which the rate matrix has no inverse; they are the same in both frames.
+
+        For example, the middle angles at gimbal lock.
+        """
         return self.rate_matrix("body").singular_set

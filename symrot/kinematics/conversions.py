@@ -59,7 +59,10 @@ SAFE = 1e-250, 1e250  # squared lengths between these bounds neither lose digits
 
 
 def array_of(values: Any, *shape: int, what: str) -> Array:
-    """Return ``values`` as a float64 array; raise ``InputError`` unless its last dimensions are ``shape``."""
+    """Return ``values`` as a float64 array; raise ``InputError`` unless its last dimensions are ``shape``.
+
+    ``what`` names the values in the message, such as "a quaternion".
+    """
     try:
         array = np.asarray(values)
         real = array.dtype.kind in "fiu"
@@ -118,7 +121,7 @@ def _in_range(*components: Array) -> tuple[Components, Array]:
 
 
 def _length(*components: Array) -> Array:
-    """Return the lengths of vectors, given by arrays of their components, without overflow or underflow."""
+    """Return the lengths of vectors, of which ``components`` are the arrays x, y, .., without overflow or underflow."""
     squares = _sum_of_squares(components)
     length: Array = np.sqrt(squares)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -157,7 +160,10 @@ def canonical(q: Any) -> Array:
 
 
 def multiply(p: Any, q: Any) -> Array:
-    """Return the Hamilton products ``p q``, shape (..., 4), broadcast together."""
+    """Return the Hamilton products ``p q`` of two arrays of quaternions, shape (..., 4), broadcast together.
+
+    As a rotation, q acts first.
+    """
     p, q = np.broadcast_arrays(array_of(p, 4, what="a quaternion"), array_of(q, 4, what="a quaternion"))
 
     def product(p0: Array, p1: Array, p2: Array, p3: Array, q0: Array, q1: Array, q2: Array, q3: Array) -> Components:
@@ -512,10 +518,16 @@ def _sum(x: Array, y: Array, odd: Mask) -> Array:
 
 
 def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
-    """Return ``dcm_sb``, shape (..., 3, 3), of Euler angles; see :func:`euler_to_quaternion`."""
+    """Return the matrices ``dcm_sb``, shape (..., 3, 3), of Euler angles in order of application.
+
+    ``sequence`` and ``degrees`` are as for :func:`euler_to_quaternion`.
+    """
     return quaternion_to_dcm(euler_to_quaternion(angles, sequence, degrees))
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles and a mask of gimbal lock, as :func:`quaternion_to_euler` does; NaN for a bad dcm."""
+    """Return Euler angles of matrices ``dcm_sb``, and a mask of gimbal lock.
+
+    Both are as for :func:`quaternion_to_euler`; a matrix that is no rotation (determinant <= 0) gives NaN.
+    """
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

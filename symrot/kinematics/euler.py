@@ -201,10 +201,11 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are regular at the attitude with the given angles of this sequence.
+        """Return the sequences, of all 24, that are not in gimbal lock at one attitude.
 
-        If some angles are symbols, a sequence is left out only if it is singular for all values of the symbols. A float
-        stands for the exact rational number that it represents.
+        ``angles`` (default: the symbols) give this attitude as angles of the present sequence. If some are symbols, a
+        sequence is left out only if it locks for all values of the symbols. A float stands for the exact rational
+        number that it represents.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
@@ -305,7 +306,10 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
-    """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three rotations."""
+    """Return the unit quaternion, shape (4, 1), of Euler angles: the product of the three rotations of ``sequence``.
+
+    ``angles`` are in rad, in order of application; default: the symbols phi, theta, psi.
+    """
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
     return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 
@@ -344,7 +348,7 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the Euler angles of a dcm, shape (3, 1), rad, in order of application, in the range of ``atan2``.
+    """Return the Euler angles, shape (3, 1), rad, of the matrix ``dcm_sb``, in order of application, as in ``atan2``.
 
     Each angle is an ``atan2`` of two expressions. The image of the last axis under the dcm gives the first and the
     middle angle; the image of the first axis under the transposed dcm gives the last angle.
@@ -368,7 +372,10 @@ def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
 
 @cache
 def chart(sequence: str) -> Chart:
-    """Return the chart of an Euler sequence: it describes every attitude, and is singular at gimbal lock."""
+    """Return the chart (attitude description) of an Euler sequence: it describes every attitude.
+
+    It is singular at gimbal lock.
+    """
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return Chart(
         name=sequence,

@@ -115,7 +115,7 @@ def conjugate(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
 
 
 def norm_squared(q: Sequence[Any] | Matrix) -> Expr:
-    """Return ``q0^2 + q1^2 + q2^2 + q3^2``."""
+    """Return ``q0^2 + q1^2 + q2^2 + q3^2``, which is 1 for a unit quaternion."""
     return sum(component**2 for component in expressions(q, 4, "a quaternion"))
 
 
@@ -125,7 +125,10 @@ def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
 
 
 def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return expressions in the entries of a matrix that are all zero if and only if the matrix is a rotation."""
+    """Return expressions in the entries of a 3 x 3 matrix that are all zero if and only if it is a rotation.
+
+    Proofs about a general rotation assume them.
+    """
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
@@ -135,7 +138,10 @@ def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
 
 
 def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
-    """Return the unit quaternion of a rotation by ``angle`` (rad) about a coordinate axis, shape (4, 1)."""
+    """Return the unit quaternion, shape (4, 1), of a rotation by ``angle`` (rad) about a coordinate axis.
+
+    ``axis`` is 0, 1, 2 or a letter X, Y, Z.
+    """
     half = sympify(angle) / 2
     return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
 
@@ -292,7 +298,10 @@ def _constant(determinant: Expr, inverse: ImmutableMatrix, _: Expr) -> tuple[Exp
 
 @cache
 def chart() -> Chart:
-    """Return the chart of unit quaternions: it describes every attitude twice (q and -q), and is singular nowhere."""
+    """Return the chart (attitude description) of unit quaternions, which is singular nowhere.
+
+    It describes every attitude twice, by q and -q.
+    """
     return Chart(
         name="quaternion",
         parameters=symbols.quaternion,

@@ -22,21 +22,27 @@ def _is_body(frame: str) -> bool:
 
 
 def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
-    """Return ``dq/dt``, shape (..., 4), in 1/s: ``1/2 q (0, omega_b)`` or ``1/2 (0, omega_s) q``; omega in rad/s."""
+    """Return ``dq/dt``, shape (..., 4), in 1/s, from a quaternion q and the angular velocity ``omega``, rad/s.
+
+    It is ``1/2 q (0, omega_b)`` with body components (``frame="body"``), ``1/2 (0, omega_s) q`` with space components.
+    """
     q, omega = array_of(q, 4, what="a quaternion"), array_of(omega, 3, what="an angular velocity")
     pure = np.concatenate([np.zeros_like(omega[..., :1]), omega], axis=-1)
     return (multiply(q, pure) if _is_body(frame) else multiply(pure, q)) / 2
 
 
 def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
-    """Return omega, shape (..., 3), rad/s, of a unit quaternion and its rate: ``2 q* dq`` or ``2 dq q*``."""
+    """Return omega, shape (..., 3), rad/s, from a unit quaternion q and its rate dq, 1/s.
+
+    It is ``2 q* dq`` in body components (``frame="body"``) and ``2 dq q*`` in space components.
+    """
     q, dq = array_of(q, 4, what="a quaternion"), array_of(dq, 4, what="the rate of a quaternion")
     inverse = q * np.array([1.0, -1.0, -1.0, -1.0])
     return 2 * (multiply(inverse, dq) if _is_body(frame) else multiply(dq, inverse))[..., 1:]
 
 
 def _turn(vector: Array, axis: int, angle: Array) -> Array:
-    """Rotate vectors about a coordinate axis by an angle (rad), right-handed, and return them."""
+    """Return ``vector`` rotated, right-handed, by ``angle`` (rad) about a coordinate axis, of number 0, 1 or 2."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
     shape = np.broadcast_shapes(vector.shape[:-1], angle.shape)
     turned: Array = np.broadcast_to(vector, (*shape, 3)).copy()
@@ -86,7 +92,10 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
 
 
 def euler_angular_velocity(angles: Any, rates: Any, sequence: str, frame: str = "body") -> Array:
-    """Return omega, shape (..., 3), rad/s, components in ``frame``, of Euler angles (rad) and their rates (rad/s)."""
+    """Return omega, shape (..., 3), rad/s, from Euler angles (rad) and their rates (rad/s).
+
+    ``sequence`` is the Euler sequence; omega has components in ``frame``, ``"body"`` or ``"space"``.
+    """
     (first, middle, last), order, _, _ = places(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
     rates = array_of(rates, 3, what="a set of angle rates")

@@ -31,7 +31,10 @@ FRAMES = ("body", "space")
 
 
 def check_frame(frame: str) -> str:
-    """Return ``frame``; raise ``InputError`` if it is neither ``"body"`` nor ``"space"``."""
+    """Return ``frame``, which says whether omega has body or space components.
+
+    Anything but ``"body"`` and ``"space"`` raises ``InputError``.
+    """
     if frame not in FRAMES:
         raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
     return frame
@@ -49,7 +52,7 @@ def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
 
 
 def axis_number(axis: int | str) -> int:
-    """Return the number 0, 1 or 2 of a coordinate axis, given as a number or as a letter X, Y, Z (either case)."""
+    """Return the number 0, 1 or 2 of a coordinate axis, given as this number or as a letter X, Y, Z (either case)."""
     if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:
@@ -63,7 +66,10 @@ def unit_vector(axis: int | str) -> ImmutableMatrix:
 
 
 def cross_sign(first: int, second: int) -> tuple[int, int]:
-    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes."""
+    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes with numbers 0 to 2.
+
+    Example: axes 0 and 2 give (1, -1).
+    """
     ((m, sign),) = ((k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second))
     return m, sign
 

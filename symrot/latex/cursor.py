@@ -47,7 +47,7 @@ class Cursor:
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
-        """Move to the beginning of another row of the LaTeX tree, or to a single item as if it were a row."""
+        """Move to the beginning of ``node``: a row of the LaTeX tree, or a single item that is read like a row."""
         self.items: list[Node] = []
         self.index = 0
         self.flatten(node.items if isinstance(node, Row) else (node,))

@@ -69,7 +69,7 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
 
 @cache
 def _floats(scene: str) -> dict[Expr, Expr]:
-    """Return the values of symbols in a scene, rounded to :data:`PRECISION` digits."""
+    """Return the values of the scene named ``scene`` by symbol, rounded to :data:`PRECISION` digits."""
     return {symbol: value.evalf(PRECISION) for symbol, value in scene_values(load_scene(scene)).items()}
 
 

@@ -19,7 +19,10 @@ def heading(title: str, remark: str = "") -> str:
 
 
 def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
-    """Return an HTML table with the given rows; cells are escaped, except cells of the class :class:`Markup`."""
+    """Return an HTML table with the given rows below the titles ``head``.
+
+    Cells are escaped, except those of the class :class:`Markup`.
+    """
     lines = [_row(head, "th")] if head else []
     lines += [_row(row, "td") for row in rows]
     return f"<table style='border-collapse:collapse;margin:0.2em 0'>{''.join(lines)}</table>"

@@ -68,7 +68,7 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The exact values of the constants in the equations, by name.
+        """The exact values, by name, of all constants in the equations, including those of the initial state.
 
         A mode, the constant that replaces a function such as sign or abs, has the value 1.
         """
@@ -156,7 +156,10 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes, by name, that do not depend on the initial state; :meth:`from_start` copies them."""
+        """The attributes, by name, that do not depend on the initial state; :meth:`from_start` copies them.
+
+        They belong to the scene and to the structure, the form of the equations.
+        """
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes

@@ -103,7 +103,7 @@ class SceneKernel:
 
     @cached_property
     def rates(self) -> Program:
-        """The program that computes ``dy/dt``, the rates of the states."""
+        """The program that computes ``dy/dt``, the rates (time derivatives) of the states y."""
         return Program.from_json(self.record["rates"])
 
     @cached_property
@@ -134,7 +134,10 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
+        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters.
+
+        A kernel without parameters ignores this array, so that all kernels are called in the same way.
+        """
         return self.record["source"]
 
 

@@ -149,7 +149,10 @@ class Derivation(PrintedPage):
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
 
     def define(self, text: str, left: Any, right: Any) -> Any:
-        """Define the name ``left`` (a symbol, or LaTeX) as ``right``, and return ``right``."""
+        """State on the page that ``left``, a symbol or LaTeX, stands for ``right``; return ``right`` for later steps.
+
+        ``text`` is the sentence above the equation.
+        """
         self.passage(text, (left, right))
         return right
 

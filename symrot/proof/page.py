@@ -15,7 +15,7 @@ __all__ = ["Drawing", "Figure", "Page", "Passage", "Section", "Step", "Table"]
 
 @dataclass(frozen=True)
 class Section:
-    """Heading of a section on the page (the printed form) of a derivation."""
+    """A heading on a page; ``title`` is its text, and the section ends at the next heading."""
 
     title: str
 
@@ -168,7 +168,7 @@ class Figure:
 
     @property
     def description(self) -> str:
-        """The caption as plain words without formulas, for screen readers."""
+        """The caption as plain words without formulas, which screen readers speak in place of the drawing."""
         return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
 
     def svg(self) -> str:

@@ -21,7 +21,10 @@ __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
 def one_double(top: int, bottom: int) -> tuple[float, ...]:
-    """Return the double nearest to the ratio top/bottom, in a tuple of length 1, as :class:`Binding` expects it."""
+    """Return the double nearest to the ratio top/bottom, in a tuple of length 1, as :class:`Binding` expects it.
+
+    For the ratio 1/4 it is ``(0.25,)``.
+    """
     return (top / bottom,)
 
 

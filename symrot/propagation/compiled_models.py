@@ -53,7 +53,10 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return a text that identifies the version of the files that derive kernels: their names, sizes and times."""
+    """Return a text that identifies the version of the files that derive kernels: their names, sizes and times.
+
+    If one of these files changes, kernels in the cache are not used any more.
+    """
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list
@@ -174,7 +177,10 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of the library that integrates the motion of a plan by DOP853: the kernel and the stepper."""
+    """Return the C text of the library that integrates the motion of a plan by DOP853: the kernel and the stepper.
+
+    If the torques have formulas, the text also contains bounds of the rates, which limit the steps.
+    """
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 

@@ -77,8 +77,9 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
     """Return Euler angles, rad, shape (3,), whose quaternion equals the given quaternion including its sign.
 
-    If the signs differ, a full rotation about the first axis is added. The sign has to be preserved since a torque
-    formula may contain odd powers of the quaternion components.
+    A quaternion and its negative are the same attitude. If the angles give the negative, a full rotation about the
+    first axis is added. The sign has to be preserved since a torque formula may contain odd powers of the quaternion
+    components.
     """
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
@@ -275,7 +276,10 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7)."""
+        """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7).
+
+        There are fewer columns if the plan leaves out components of omega because they are constant.
+        """
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

@@ -88,12 +88,18 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def failure(self) -> BaseException | None:
-        """Return the exception that the torque raised during the last motion, or None."""
+        """Return the exception that the torque raised during the last motion, or None if it raised none.
+
+        The C stepper only reports that it cannot continue; this exception says why.
+        """
 
 
 @final
 class _Function(TorqueSource):
-    """A torque that is a Python function, called from C. If it raises an exception, the motion ends."""
+    """A torque that is a Python function of (t, omega, quaternion), called from C.
+
+    If the function raises an exception or does not return three finite numbers, the motion ends with an error.
+    """
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -149,7 +155,10 @@ class _Function(TorqueSource):
 
 @final
 class _CFunction(TorqueSource):
-    """A torque that is a C function of type ``int (double, const double[3], const double[4], double[3], void *)``."""
+    """A torque that is a C function of type ``int (double, const double[3], const double[4], double[3], void *)``.
+
+    Its arguments are time, omega, quaternion, the array for the torque, and a null pointer.
+    """
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
@@ -178,7 +187,11 @@ class _CFunction(TorqueSource):
 
 @final
 class _Table(TorqueSource):
-    """A torque that is a table of samples, interpolated by cubic splines between switching times."""
+    """A torque that is a table of samples, interpolated by cubic splines between switching times.
+
+    ``switching`` holds these times, s, at which the torque may jump. InputError is raised if the times of the table do
+    not increase, if the shapes of times and samples do not fit, or if a spline far exceeds the samples.
+    """
 
     samples = True
     most_steps = MOST_STEPS
@@ -210,7 +223,7 @@ class _Table(TorqueSource):
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
-        """Raise InputError for times beyond the table."""
+        """Raise InputError if a time from ``low`` to ``high``, s, lies beyond the table."""
         if low < self.span[0] or high > self.span[1]:
             beyond = low if low < self.span[0] else high
             raise InputError(
@@ -269,7 +282,10 @@ def _check_overshoot(spline: Any, largest: float) -> None:
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the sample times, s, at which the third derivative of a spline jumps by more than a rounding error."""
+    """Return the sample times, s, at which the third derivative of a spline jumps by more than a rounding error.
+
+    A step of the motion has to end there. The list is empty for samples of one cubic polynomial.
+    """
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
     bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
@@ -277,7 +293,10 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Wrap a torque, in any form that :func:`symrot.propagator` accepts, in an object with a common interface."""
+    """Wrap a torque, in any form that :func:`symrot.propagator` accepts, in an object with a common interface.
+
+    ``switching`` holds the times, s, at which a table may jump. InputError is raised for a torque in any other form.
+    """
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -371,7 +390,10 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene."""
+    """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene.
+
+    ``shared`` holds what does not depend on the initial state, and ``plan`` contains the initial state.
+    """
 
     has_external_torque = True
 
@@ -412,12 +434,19 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and the cost of the motion."""
+        """Return the states at the times, shape (n, N), and the cost of the motion, whatever the order of the times.
+
+        The times are in s. An exception that the torque function raises is raised again.
+        """
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+
+        The motion is integrated and its steps are recorded. An exception that the torque function raises is raised
+        again.
+        """
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 

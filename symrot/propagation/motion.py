@@ -122,7 +122,7 @@ class Setup:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The kernel of the plan, which computes rates and quantities; loaded on first use."""
+        """The kernel of the plan, the code that computes rates and output quantities; loaded on first use."""
         return self.load_kernel()
 
     @cached_property
@@ -148,14 +148,15 @@ class Setup:
 
     @cached_property
     def python_rates(self) -> Callable[..., Any]:
-        """The rates as a NumPy function ``f(t, y, p)``."""
+        """The rates (time derivatives of the states y) as a NumPy function ``f(t, y, p)``; p are their parameters."""
         return python_rates(self.plan, self.kernel)
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
         """Function from the parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed.
 
-        The bounds ensure that no step passes over a short pulse of a torque.
+        The bounds ensure that no step passes over a short pulse of a torque. They are needed only for torques with
+        formulas.
         """
         return formula_deviations(self.plan, self.kernel)
 
@@ -169,7 +170,10 @@ class Setup:
 
     @cached_property
     def on_own_clock(self) -> "Setup":
-        """A copy of the setup whose clock shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
+        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
+
+        Times near a late start then keep more digits, see :mod:`symrot.propagation.time_shift`.
+        """
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
@@ -199,7 +203,10 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy of the setup whose clock shows 0 at the start, so that times near the start keep all digits."""
+        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
+
+        Times near a late start then keep all digits. If the rates depend on time, the copy has a library of its own.
+        """
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
@@ -234,6 +241,7 @@ class ClosedFormSetup:
 class Motion(ABC):
     """The motion of a scene from one initial state; its clock shows 0 at the scene time ``epoch``.
 
+    ``setup`` holds what it shares with motions from other initial states; ``plan`` contains its own initial state.
     ``has_external_torque`` says whether a torque without a formula acts on the body.
     """
 
@@ -244,22 +252,31 @@ class Motion(ABC):
 
     @property
     def choice(self) -> Choice:
-        """The method that follows the motion, and the reason for it."""
+        """The method that follows the motion, such as ``"taylor"``, and the reason for it, as a :class:`Choice`."""
         return self.setup.choice
 
     @property
     def tolerance(self) -> float:
-        """Error of the trajectory to aim for."""
+        """Error of the trajectory to aim for.
+
+        It is in rad for the attitude, and relative to its size for the angular velocity.
+        """
         return self.setup.tolerance
 
     @property
     def start(self) -> float:
-        """Initial time, s, on the clock of the motion."""
+        """Initial time, s, on the clock of the motion; 0 if the clock starts with the motion.
+
+        The clock is the time that the stepper counts.
+        """
         return self.setup.start
 
     @property
     def epoch(self) -> float:
-        """Time of the scene, s, at which the clock of the motion shows 0."""
+        """Time of the scene, s, at which the clock of the motion shows 0.
+
+        The clock is the time that the stepper counts. The epoch is 0 if this is the time of the scene.
+        """
         return self.setup.epoch
 
     @property
@@ -269,17 +286,20 @@ class Motion(ABC):
 
     @property
     def rates(self) -> Callable[..., Any]:
-        """The rates as a NumPy function ``f(t, y, p)``."""
+        """The rates (time derivatives of the states y) as a NumPy function ``f(t, y, p)``; p are their parameters."""
         return self.setup.python_rates
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about accuracy that cannot be guaranteed for this motion."""
+        """Sentences about accuracy that cannot be guaranteed for this motion; empty if there are none."""
         return self.setup.warnings
 
     @cached_property
     def rate_parameters(self) -> list[float]:
-        """The values of the parameters of the rates, for this initial state."""
+        """The values of the parameters of the rates, for this initial state, in the order of the kernel's array p.
+
+        IntegrationStopped is raised if a value exceeds the range of doubles.
+        """
         try:
             return self.setup.rate_binding(self.plan)
         except OverflowError:
@@ -332,7 +352,11 @@ class Motion(ABC):
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times in one array, shape (n, N), and the cost of the motion; see :meth:`follow`."""
+        """Return the states at the times in one array, shape (n, N), and the cost of the motion.
+
+        It differs from :meth:`follow`, which explains the arguments, only for a motion in closed form, whose separate
+        arrays are joined.
+        """
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
@@ -357,7 +381,8 @@ class Motion(ABC):
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
         """Return a function that takes n times, s, and returns omega, shape (3, n), or with the quaternion, (7, n).
 
-        ``path`` is a result of :meth:`path`.
+        ``path`` is a result of :meth:`path`, and ``with_attitude`` says whether the function returns the quaternion.
+        For a single time the shape is (3,) or (7,).
         """
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
@@ -404,7 +429,10 @@ class ShiftableMotion(RestartableMotion):
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
@@ -427,7 +455,10 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether these times of the scene keep more digits on a clock that shows 0 at the start."""
+        """Return whether these times of the scene keep more digits on a clock that shows 0 at the start.
+
+        They do if all lie between half the start and twice the start, which is not 0.
+        """
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
@@ -450,7 +481,7 @@ class ConstantMotion(RestartableMotion):
         return ConstantMotion(self.setup, self.setup.plan.from_start(initial))
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return an empty array, shape (n, 0): no state is integrated."""
+        """Return an empty array, shape (n, 0), for n times, and a cost of zero: no state is integrated."""
         return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
@@ -481,9 +512,10 @@ class ClosedFormMotion(RestartableMotion):
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
-        """Return the states at the times and the cost of the motion.
+        """Return the states at the times and the cost of the motion, which counts no steps.
 
         The states are the arrays of angular velocity, shape (n, 3), and attitude, shape (n, 4), if it is computed.
+        ``in_order`` promises that the times are finite and never decrease.
         """
         attitude, exact = self.plan.structure.attitude, self.exact
         began, start = perf_counter(), self.setup.start
@@ -526,13 +558,19 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the Taylor library: first for the rates, then for the conserved quantities."""
+        """The parameters of the Taylor library: first for the rates, then for the conserved quantities.
+
+        The rates have one double per parameter, the conserved quantities two.
+        """
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
@@ -557,11 +595,17 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
+
+        ``in_order`` promises that the times are finite and never decrease, which saves time.
+        """
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+
+        Span and times are on the clock of the motion. The motion is integrated and its steps are recorded.
+        """
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
@@ -569,7 +613,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
 @final
 class SciPyMotion(ShiftableMotion):
-    """A motion integrated by one of SciPy's methods."""
+    """A motion integrated by one of SciPy's methods, with rates that NumPy computes."""
 
     def from_start(self, initial: Initial) -> "SciPyMotion":
         """Return the motion from another initial state, for which the equations must have the same form."""
@@ -577,7 +621,10 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The same motion on a clock that shows 0 at the start, where times near the start keep all digits."""
+        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
+
+        Times near a late start keep all digits on this clock.
+        """
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
@@ -597,7 +644,10 @@ class SciPyMotion(ShiftableMotion):
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return SciPy's method and its limits for this motion, for given parameters of the rates."""
+        """Return SciPy's method and its limits for this motion, for given parameters of the rates.
+
+        The parameters matter for the bounds that keep a step from passing over a short pulse of a torque.
+        """
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)
@@ -606,14 +656,20 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion."""
+        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
+
+        ``in_order`` is not used: the times are sorted in any case.
+        """
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+
+        Span and times are on the clock of the motion. The motion is integrated and SciPy's interpolants are stored.
+        """
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)

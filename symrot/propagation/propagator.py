@@ -231,7 +231,7 @@ class Propagator:
         return transition_matrix(scene, t0, t1)
 
     def _of(self, scene: Scene) -> Self:
-        """Return a propagator of another scene with the same options."""
+        """Return a propagator of another scene with the same options; it is prepared on first use."""
         other = copy(self)
         other.scene = scene
         return other

@@ -38,7 +38,8 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 def starts_far(start: float, low: float, high: float) -> bool:
     """Return whether a motion over the times from ``low`` to ``high``, s, should use a clock that shows 0 at its start.
 
-    It should if all times lie between half and twice the start, since differences from the start are exact there.
+    It should if all times lie between half and twice the start, since differences from the start are exact there. For a
+    start at 1000 s these are the times from 500 to 2000 s; for a start at 0 the result is False.
     """
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
@@ -89,7 +90,8 @@ class ShiftedParameters:
     def parameters(self, epoch: float | Fraction) -> list[float]:
         """Return the values of all formulas for an epoch, s, each computed exactly and rounded once.
 
-        The epoch is given on the clock of the motion.
+        The epoch, the time at which the stepper's clock shows 0, is given on the clock of the motion.
+        IntegrationStopped is raised if a value exceeds the range of doubles.
         """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}

@@ -168,7 +168,10 @@ class Trajectory(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether the motion was computed up to its last sample time or to a terminal event."""
+        """Whether the motion was computed up to its last sample time or to a terminal event.
+
+        It is false only for the trajectory that a PropagationError holds.
+        """
         return self.status >= 0
 
     @property
@@ -188,7 +191,7 @@ class Trajectory(MotionSamples):
 
     @property
     def y(self) -> Floats:
-        """The integrated states, shape (N, n)."""
+        """The integrated states at the samples, shape (N, n), one row per state."""
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
@@ -215,14 +218,17 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def omega(self) -> Floats:
-        """Angular velocity, body components, rad/s, shape (n, 3)."""
+        """Angular velocity at the samples, body components, rad/s, shape (n, 3)."""
         if isinstance(self._parts, tuple):
             return self._parts[0].copy()
         return self._evaluate("omega_1 of t", "omega_2 of t", "omega_3 of t")
 
     @cached_property
     def quaternion(self) -> Floats:
-        """Attitude as unit quaternions, scalar first, body to space, shape (n, 4)."""
+        """Attitude at the samples as unit quaternions, scalar first, body to space, shape (n, 4).
+
+        InputError is raised if the attitude was not computed, see :attr:`has_attitude`.
+        """
         self._need_attitude()
         if isinstance(self._parts, tuple):  # of a closed form: rounded from a unit quaternion
             return self._parts[1].copy()
@@ -230,7 +236,11 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def invariants(self) -> list[Invariant]:
-        """The conserved quantities along the trajectory; their conservation was proven when the kernel was derived."""
+        """The conserved quantities along the trajectory, with the values at the samples and their drift.
+
+        Their conservation was proven when the kernel was derived. If the quaternion is integrated, its norm is the last
+        item. The list may be empty.
+        """
         invariants = []
         conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:
@@ -314,7 +324,7 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def at_events(self) -> "list[Trajectory]":
-        """For each requested event, the trajectory at the times of the event; empty if none was requested."""
+        """For each requested event, the trajectory at the times of the event; an empty list if none was requested."""
         pairs = zip(self.t_events or (), self.y_events or (), strict=True)
         return [self._sampled(t, states) for t, states in pairs]
 
@@ -408,5 +418,5 @@ class Trajectory(MotionSamples):
         return symrot.show(self, path)
 
     def _repr_html_(self) -> str:
-        """Return the page of the motion in a frame, as a notebook shows it."""
+        """Return the page of the motion in a frame, as a notebook shows it: a text of HTML."""
         return symrot.in_notebook(self)

@@ -26,7 +26,7 @@ BAND_NOTE = "filled: least to greatest"
 
 
 def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the width and height of matplotlib axes in columns: the unit of 1/150 inch, about one pixel."""
+    """Return the size (width, height) of a panel, matplotlib axes, in columns: units of 1/150 inch, about a pixel."""
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
 
@@ -111,7 +111,7 @@ def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: fl
 
 
 def _long_runs(mask: Mask, fraction: float) -> Mask:
-    """Return a mask in which runs of True that are shorter than a fraction of the mask's length are set to False."""
+    """Return ``mask`` without short runs of True: those shorter than ``fraction`` of its length become False."""
     steps = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     long = np.zeros(len(mask), dtype=bool)
     for start, stop in steps.reshape(-1, 2):
@@ -122,7 +122,8 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
     """Yield the part of a curve that hides an earlier curve and the part that does not, the longer part first.
 
-    Each part is a pair: the values of the curve, NaN outside the part, and whether it is the part that hides.
+    ``hidden`` is True at the values that hide an earlier curve. Each part is a pair: the values of the curve, NaN
+    outside the part, and whether it is the part that hides. An empty part is left out.
     """
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
@@ -134,7 +135,7 @@ def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
 
 def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[str], colours: Sequence[str] = COLOURS,
                 widths: Sequence[float] = WIDTHS) -> None:  # fmt: skip
-    """Draw curves over time, each of shape (n,) with NaN where it is interrupted, and name them for a legend.
+    """Draw curves over the times ``t``, each of shape (n,) with NaN where interrupted, and label them for a legend.
 
     A curve that oscillates faster than the pixels is drawn as a band between its extremes. Where a curve would hide an
     earlier one, it is dashed. The linear or logarithmic scale of the axes must be set before.
@@ -169,7 +170,11 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
-    """Return whether a curve is drawn as a band instead of a line; times that do not increase always give a line."""
+    """Return whether a curve oscillates so fast that it is drawn as a band instead of a line.
+
+    ``size`` is the panel's in columns (:func:`columns_of`), and ``height`` its height in the unit of the curve. Times
+    that do not increase, and fewer than three values, always give a line.
+    """
     known = np.isfinite(curve)
     if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
         return False

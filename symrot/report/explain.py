@@ -21,7 +21,10 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the number of operations of each kind in one evaluation of a structure's equations of motion."""
+    """Return how many operations of each kind one evaluation of the equations of motion takes, such as ``{"mul": 12}``.
+
+    ``structure`` says which quantities of a scene are zero, equal or constant, so that terms can be left out.
+    """
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -35,9 +38,10 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the table rows for the general motion and then for each rule of a plan, in the order of application.
+    """Return the rows of the table `symrot explain` about rules: first the general motion, then each rule in its order.
 
-    Each row counts the operations that remain after the rule, and the operations that the rule saves.
+    A rule, such as using a symmetry, simplifies the equations. Each row counts the operations that remain after the
+    rule, and those that it saves.
     """
     from symrot.planning.general_structure import general_structure
 
@@ -53,7 +57,7 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the table rows that do not come from rules: states, integration method, outputs, cached kernel."""
+    """Return the rows of the table `symrot explain` that do not come from rules: states, method, outputs, cache."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
@@ -79,7 +83,10 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the table rows that say how steps notice short pulses, jumps and kinks in torques given by formulas."""
+    """Return the rows of the table that say how steps notice short pulses, jumps and kinks in torque formulas.
+
+    ``method`` is the integration method. The list is empty if no torque is a formula.
+    """
     from symrot.propagation.compiled_models import has_formulas
 
     if not has_formulas(plan):
@@ -107,7 +114,10 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the table row about functions with jumps or kinks, such as sign(x)."""
+    """Return the row of the table about functions with jumps or kinks, such as sign(x), in torques.
+
+    ``functions`` are their calls as text.
+    """
     named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
     parts = [
         f"{', '.join(text for text, bent in named if bent is bends)} {verb}"
@@ -122,7 +132,10 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return a list with the table row about a torque given by samples; empty if the scene has no such torque."""
+    """Return a list with one row of the table `symrot explain`, about a torque given by samples in a file.
+
+    The list is empty if the scene has no such torque.
+    """
     table = plan.scene.table
     if table is None:
         return []
@@ -133,7 +146,7 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 
 
 def facts(plan: Plan) -> "PlanReport":
-    """Return the explained plan as data for JSON.
+    """Return the table `symrot explain` as data for JSON.
 
     In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number of operations that
     the row's rule saves.
@@ -177,5 +190,5 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the explanation of a plan as text, as `symrot explain` prints it."""
+    """Return the table `symrot explain` of a plan as text: items computed or skipped, by which rule, and savings."""
     return "\n".join(lines(facts(plan)))

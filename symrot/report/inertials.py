@@ -53,7 +53,7 @@ def lines(inertial: Inertial) -> list[str]:
 
 
 def table_text(inertial: Inertial) -> str:
-    """Return the table ``[body]`` of a scene as TOML, with at most 34 digits of each number."""
+    """Return the table ``[body]`` of a scene file as TOML: name, mass and inertia, numbers with at most 34 digits."""
     table = dict(inertial.table())
     rows = [[_decimal(entry) for entry in row] for row in inertial.inertia]
     return toml_text({"body": {**table, "mass": _decimal(inertial.mass), "inertia": rows}})
@@ -68,13 +68,13 @@ def _numbers(values: Sequence[float]) -> str:
 
 
 def link_facts(link: Link) -> dict[str, Any]:
-    """Return data for JSON about a robot's link: its mass properties, or the reason why it has none."""
+    """Return data for JSON about one link (rigid part) of a robot: mass properties, or the reason why it has none."""
     body = {} if link.inertial is None else facts(link.inertial)
     return {"name": link.name, "problem": link.problem, **body}
 
 
 def link_lines(links: Sequence[Link]) -> list[str]:
-    """Return one line of text for each link of a robot: its mass properties, or the reason why it has none."""
+    """Return one line of text for each link (rigid part) of a robot: its mass properties, or why it has none."""
     width = max(len(link.name) for link in links)
     return [f"{link.name:{width}}  {_summary(link)}" for link in links]
 

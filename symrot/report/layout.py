@@ -30,7 +30,7 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text, with enough digits to distinguish the closest two of them."""
+    """Return numbers as text with six digits, or as many more as distinguish the closest two of them."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -128,7 +128,10 @@ def columns(
 
 
 def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
-    """Return the widths of a table's columns: the length of the longest text, or less if a column must be wrapped."""
+    """Return the width of each column of a table: the length of its longest text, or less if it must be wrapped.
+
+    The arguments are those of :func:`columns`.
+    """
     count = len(rows[0])
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
@@ -146,9 +149,10 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return, for a table that is too wide for one line, the indices of the columns in each of its parts.
+    """Return how a table that is too wide for one line is split: the indices of the columns in each part.
 
-    The parts are printed below each other, each with the first column.
+    The parts are printed below each other, each with the first column. Only columns in ``right`` (numbers) begin a
+    part; ``widths`` are those of the columns, and ``width`` is that of a line.
     """
     parts = [[0]]
     for i in range(1, len(widths)):

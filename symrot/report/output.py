@@ -25,7 +25,10 @@ ROWS_AT_ONCE = 4096
 
 
 def metadata(trajectory: "Trajectory", arrays: list[Labelled]) -> "FileRecord":
-    """Return the description that a trajectory file begins with: scene, method, conventions, meaning of each array."""
+    """Return the description at the head of a trajectory's file: scene, method, conventions, meaning of each array.
+
+    ``arrays`` are the arrays that the file will have, with their labels.
+    """
     requested = zip(trajectory.events or (), trajectory.event_kinds or (), trajectory.t_events or (), strict=True)
     scene, stats = trajectory.scene, trajectory.stats
     about: FileRecord = {
@@ -104,7 +107,10 @@ def _csv(stream: BinaryIO, arrays: list[Labelled], events: list[Labelled], about
 
 
 def _printed(item: Labelled, part: slice) -> list[list[str]]:
-    """Return the numbers in a part of the samples as text, one list per component; digits suffice for exact doubles."""
+    """Return the numbers of an array in a part of the samples as text, one list per component.
+
+    The digits suffice to read back the same doubles.
+    """
     values = item.values[part].reshape(-1, len(item.components)).T
     return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
 

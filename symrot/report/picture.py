@@ -32,12 +32,15 @@ PALETTE = 128  # colours: a few curves, their shades on white, greys
 
 
 def literal(text: str) -> str:
-    """Return text with dollar signs escaped, since matplotlib begins a formula at a dollar sign."""
+    """Return text in which matplotlib sees no formula: dollar signs are escaped, since a formula begins at one."""
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 
 def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: bool = True) -> None:
-    """Call ``figure`` to draw a matplotlib Figure in symrot's style, and write it to a file; see :func:`save_page`."""
+    """Call ``figure`` for a matplotlib Figure in symrot's style, and write it to the file ``path``.
+
+    The other arguments are those of :func:`save_page`.
+    """
     import matplotlib
 
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
@@ -45,9 +48,9 @@ def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: boo
 
 
 def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None:
-    """Write a matplotlib Figure to a file; the suffix of ``path`` decides the format.
+    """Write ``page``, a matplotlib Figure, to a file; the suffix of ``path`` decides the format.
 
-    ``few_colours`` makes a PNG smaller, for a figure without shades.
+    ``dpi`` is the number of pixels per inch; ``few_colours`` makes a PNG smaller, for a figure without shades.
 
     Raises
     ------
@@ -63,7 +66,10 @@ def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure as a PNG file with a palette of few colours, by Pillow, which matplotlib requires anyway."""
+    """Write a figure into ``stream`` as a PNG with a palette of few colours, which makes the file small.
+
+    This uses Pillow, which matplotlib requires anyway.
+    """
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 

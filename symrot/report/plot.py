@@ -37,7 +37,7 @@ QUIET = 0.01  # a component that changes by less than this fraction of its size 
 
 
 def require_matplotlib(option: str = "--plot") -> None:
-    """Raise InputError if matplotlib is missing."""
+    """Raise InputError if matplotlib is missing; ``option`` is the option of the command line that needs it."""
     if find_spec("matplotlib") is None:
         raise InputError(
             f"{option}: expected matplotlib, but it is not installed; install it with pip install 'symrot[plot]'"
@@ -67,7 +67,10 @@ def dense(trajectory: Any) -> Any:
 
 
 def _fastest(trajectory: Any) -> float:
-    """Return an upper estimate of the fastest rate in a motion, rad/s: rotation plus the nutation due to rotors."""
+    """Return an upper estimate of the fastest rate of rotation in a motion, rad/s.
+
+    It is the largest angular velocity, plus the rate of the nutation that rotors cause.
+    """
     moments = [float(moment) for moment in trajectory.scene.body.principal.moments]
     rotor = float(np.linalg.norm(_rotor(trajectory.scene)))
     return float(np.max(np.linalg.norm(trajectory.omega, axis=1))) + rotor / (min(moments) or max(moments))
@@ -89,14 +92,14 @@ def _times(trajectory: Any) -> tuple[Floats, str]:
 
 
 def _is_wide(axes: Any) -> bool:
-    """Return whether a title on the left and a legend on the right fit beside each other above the axes."""
+    """Return whether axes are so wide that a title on the left and a legend on the right fit in one line above."""
     from matplotlib import rcParams
 
     return bool(rcParams["axes.titlelocation"] == "left" and columns_of(axes)[0] >= WIDE)
 
 
 def _legend(axes: Any) -> None:
-    """Add the legend of the curves above the axes; if the axes are too narrow for that, in a corner."""
+    """Add the legend of the curves above the axes, or in a corner of axes that are too narrow for that."""
     count = len(axes.get_legend_handles_labels()[1])
     if _is_wide(axes):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=count, handlelength=2.0, columnspacing=1.2)
@@ -106,7 +109,7 @@ def _legend(axes: Any) -> None:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw components over time.
+    """Draw the components of a vector over time: ``columns`` has one column for each of ``names``, in ``unit``.
 
     A nearly constant component that is much larger than the others would make them look flat. It is not drawn; the
     legend states its value.
@@ -168,7 +171,10 @@ def _vertical(axes: Any, t: Floats, trajectory: Any) -> None:
 
 
 def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
-    """Draw the largest change of each conserved quantity up to each time, on a logarithmic scale."""
+    """Draw, for each conserved quantity, its largest relative change so far over time, on a logarithmic scale.
+
+    ``tolerance`` is that of the integration, drawn for comparison.
+    """
     axes.set_title("Drift of conserved quantities, the largest so far")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
@@ -308,7 +314,10 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure of the samples of a motion: all its panels on one page."""
+    """Return a matplotlib Figure with all panels of a motion on one page, drawn from the samples of ``trajectory``.
+
+    ``tolerance`` is that of the integration, a line in the panel of the conserved quantities.
+    """
     from matplotlib.figure import Figure
 
     names = [name for name in OVER_TIME if name not in _left_out(trajectory)]
@@ -331,7 +340,10 @@ def figure(trajectory: Any, tolerance: float) -> Any:
 
 
 def _left_out(trajectory: Any) -> set[str]:
-    """Return the names of the panels that a figure omits, since the motion has no attitude or the scene no vertical."""
+    """Return the names of the panels that the figure of a motion omits.
+
+    They are the panels about attitude if the motion has none, and about the vertical if the scene has no vertical.
+    """
     if not trajectory.has_attitude:
         return {"attitude", "vertical", "space"}
     return set() if has_vertical(trajectory.scene) else {"vertical"}

@@ -45,7 +45,7 @@ class InitialRecord(TypedDict):
 
 
 class SpanRecord(TypedDict):
-    """The time span of a run: start and end (s) as exact text, and the number of samples."""
+    """The time span of a run: first and last time (s) as exact text, and the number of samples."""
 
     start: str
     stop: str
@@ -61,7 +61,10 @@ class MethodRecord(TypedDict):
 
 
 class RuleRecord(TypedDict):
-    """The decision of one rule of a plan, such as using a symmetry; see :class:`symrot.planning.rules.RuleOutcome`."""
+    """The decision of one rule of a plan, a simplification of the equations of motion such as using a symmetry.
+
+    See :class:`symrot.planning.rules.RuleOutcome`.
+    """
 
     item: str
     skipped: bool
@@ -70,7 +73,10 @@ class RuleRecord(TypedDict):
 
 
 class CostRecord(TypedDict):
-    """The cost of a motion: numbers of steps and of evaluations of the equations of motion, and seconds."""
+    """What a motion cost: steps, evaluations of the equations of motion, and seconds.
+
+    ``rejected`` counts the steps that were tried again; ``preparation_seconds`` is the time until the kernel was ready.
+    """
 
     steps: int
     rejected: int
@@ -80,7 +86,10 @@ class CostRecord(TypedDict):
 
 
 class SwitchingRecord(TypedDict):
-    """One switching of a function in a torque; see :class:`symrot.propagation.steppers.stepping.Switching`."""
+    """One time ``t`` at which a function with a jump or kink in a torque, such as sign(x), switches.
+
+    See :class:`symrot.propagation.steppers.stepping.Switching`.
+    """
 
     t: float
     function: str
@@ -88,7 +97,10 @@ class SwitchingRecord(TypedDict):
 
 
 class InvariantRecord(TypedDict):
-    """A conserved quantity and its drift along a trajectory; see :class:`symrot.propagation.trajectory.Invariant`."""
+    """A quantity that the motion conserves, and how far its computed value drifts.
+
+    See :class:`symrot.propagation.trajectory.Invariant`.
+    """
 
     name: str
     unit: str
@@ -99,7 +111,7 @@ class InvariantRecord(TypedDict):
 
 
 class LostRecord(TypedDict):
-    """A candidate for a conserved quantity, such as a momentum component, that this motion does not conserve."""
+    """A quantity, such as a momentum component, that many motions conserve but this one does not, with the reason."""
 
     name: str
     unit: str
@@ -136,7 +148,7 @@ class WrittenRecord(TypedDict):
 
 
 class RunReport(TypedDict):
-    """The complete report of `symrot run`."""
+    """The complete report of `symrot run`, as ``symrot run --json`` prints it."""
 
     symrot: str
     scene: SceneRecord
@@ -175,14 +187,17 @@ class PlanRow(TypedDict):
 
 
 class OperationsRecord(TypedDict):
-    """Numbers of operations in one evaluation of the rates: by the general and by the plan's simplified equations."""
+    """Numbers of operations in one evaluation of the rates ``dy/dt``.
+
+    ``general`` is that of the equations for any body, ``specialised`` that of the equations after the plan's rules.
+    """
 
     general: int
     specialised: int
 
 
 class NamedScene(TypedDict):
-    """The name of the scene to which an explained plan belongs."""
+    """The scene to which the report of `symrot explain` belongs: name, title and source."""
 
     name: str
     title: str
@@ -190,7 +205,7 @@ class NamedScene(TypedDict):
 
 
 class PlanReport(TypedDict):
-    """The complete report of `symrot explain`."""
+    """The complete report of `symrot explain`, as ``symrot explain --json`` prints it."""
 
     scene: NamedScene
     rows: list[PlanRow]
@@ -210,7 +225,7 @@ class ArrayRecord(TypedDict):
 
 
 class DriftRecord(TypedDict):
-    """The drift of one conserved quantity over a motion, as recorded in a file of samples."""
+    """How far one conserved quantity drifts over a motion, as recorded in a file of samples."""
 
     name: str
     unit: str
@@ -227,7 +242,7 @@ class EventRecord(TypedDict):
 
 
 class FileRecord(TypedDict):
-    """The description at the beginning of a file of samples."""
+    """The description at the head of a file of samples; it says what each array is and how the motion was computed."""
 
     symrot: str
     scene: str

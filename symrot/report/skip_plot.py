@@ -19,7 +19,10 @@ LEAST = 0.6  # position on the logarithmic axis of a motion without any operatio
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of the savings that :func:`symrot.bench.skip.measure` measured, one row per kernel."""
+    """Return a matplotlib Figure of the operations and time that kernels save which are specialised to their scenes.
+
+    ``ladder`` is the result of :func:`symrot.bench.skip.measure`; the figure has one row per kernel.
+    """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -63,5 +66,5 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Write the figure of the savings to a file; the suffix of ``path`` decides the format."""
+    """Write the figure of :func:`figure` to a file; the suffix of ``path`` decides the format."""
     draw(lambda: figure(ladder), path)

@@ -48,7 +48,7 @@ class Window:
 
     @property
     def spacing(self) -> float:
-        """Degrees between parallels of the grid: the widest spacing in GRIDS that fits four times into the window."""
+        """Degrees between circles of latitude: the widest spacing in GRIDS that fits four times into the window."""
         across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
@@ -58,7 +58,10 @@ class Window:
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Return a divisor for numbers of about ``size``, and the unit with a prefix: (0.002, "m") -> (0.001, "mm")."""
+    """Return a factor and a unit with prefix for printing numbers of about ``size``: (0.002, "m") -> (0.001, "mm").
+
+    A number is printed divided by the factor.
+    """
     factor, prefix = next((pair for pair in PREFIXES if size >= 0.1 * pair[0]), PREFIXES[-1])
     return (factor, f"{prefix}{unit}") if size > 0 else (1.0, unit)
 
@@ -72,7 +75,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return the viewing axes from which the path of directions lies in front, shape (3, 3).
+    """Return axes of view for which the path of ``directions`` lies on the near side, shape (3, 3).
 
     The rows are the unit vectors to the right, upward and toward the eye.
     """
@@ -87,7 +90,11 @@ def _eye(directions: Floats) -> Floats:
 
 
 def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
-    """Return viewing axes that look down on the middle of a path, and a window around it; None for a large path."""
+    """Return (view, window) for a path on a small part of the sphere; None for a large or a tiny path.
+
+    The view looks down on the middle of the path (:func:`_eye` explains its rows); the window is the part that is
+    drawn.
+    """
     middle = directions.mean(axis=0)
     length = float(np.linalg.norm(middle))
     if length < 0.5:
@@ -107,7 +114,10 @@ def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
 
 
 def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
-    """Draw a thin curve on the sphere; the part on the far side is faint."""
+    """Draw a thin curve through ``points`` on the sphere; the part on the far side is faint.
+
+    ``view`` is explained at :func:`_eye`; ``style`` are arguments of matplotlib.
+    """
     x, y, z = view @ points.T
     for visible, opacity in ((z >= 0, 1.0), (z < 0, BACK)):
         mask = np.where(visible, 1.0, np.nan)
@@ -115,7 +125,10 @@ def _curve(axes: Any, points: Floats, view: Floats, **style: Any) -> None:
 
 
 def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fontsize: float | None = None) -> None:
-    """Draw the sphere: its outline, parallels, meridians and the three axes."""
+    """Draw the sphere: its outline, circles of latitude, meridians, and the three axes with their ``labels``.
+
+    ``view`` is explained at :func:`_eye`; ``window`` is the part that is drawn.
+    """
     turn = np.linspace(0.0, 2 * np.pi, 361)
     axes.fill(np.cos(turn), np.sin(turn), facecolor="#fafafa", edgecolor=FAINT, linewidth=0.8, zorder=0)
     spacing = window.spacing
@@ -142,7 +155,8 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
     """Draw level curves of ``value``, a function of direction, on the near side of the sphere.
 
-    Return False, and draw nothing, if the function is constant.
+    Return whether curves were drawn: False if the function is constant. ``view`` is explained at :func:`_eye`;
+    ``window`` is the part that is drawn.
     """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
@@ -196,16 +210,19 @@ def _path(
 
 
 def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
-    """Return a mask of the directions that are too far from the next direction of a path to be joined with it.
+    """Return a mask of the directions that are too far from the next direction of a path for a line between them.
 
-    ``extent`` is the size of the path, rad.
+    ``extent`` is the size of the path, rad; the last direction is never marked.
     """
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     return np.append(steps > LONGEST * extent, False)
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
-    """Draw a small path on the plane that touches the sphere at the middle of the path."""
+    """Draw a tiny path of directions on the plane that touches the sphere at ``middle``, the middle of the path.
+
+    ``extent`` is the size of the path, rad; ``labels`` are the names of the three axes.
+    """
     first, second = sorted(np.argsort(np.abs(middle))[:2])
     across = np.eye(3)[first] - middle[first] * middle
     across /= np.linalg.norm(across)
@@ -280,7 +297,8 @@ def draw_directions(
 def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
     """Return where to place an inset, a small second drawing: in the corner that covers the fewest path points.
 
-    The result is the lower left corner of the inset, in fractions of the width and height of the axes.
+    The points are (x, y). The result is the lower left corner of the inset, in fractions of the width and height of the
+    axes.
     """
     across = 0.5 + (x - window.centre[0]) / (2.0 * window.half)
     up = 0.5 + (y - window.centre[1]) / (2.0 * window.half)
@@ -297,7 +315,10 @@ def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
 
 def _sphere(axes: Any, directions: Floats, view: Floats, labels: tuple[str, ...], window: Window,
             is_inset: bool = False) -> None:  # fmt: skip
-    """Draw the part of the sphere inside a window, and a path of directions on it."""
+    """Draw the part of the sphere inside a window, and a path of directions on it.
+
+    ``view`` is explained at :func:`_eye`; an inset is a small second drawing, with smaller letters.
+    """
     axes.set_aspect("equal")
     axes.set_xlim(window.centre[0] - window.half, window.centre[0] + window.half)
     axes.set_ylim(window.centre[1] - window.half, window.centre[1] + window.half)

@@ -18,7 +18,8 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 def figure(suite: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of other programs' times divided by symrot's times at equal error.
 
-    Each motion has a row, with one dot per power of ten of the error.
+    ``suite`` is the data of a benchmark of several motions. Each motion has a row, with one dot per power of ten of the
+    error.
     """
     from matplotlib.figure import Figure
 
@@ -67,7 +68,7 @@ def figure(suite: Mapping[str, Any]) -> Any:
 
 
 def curves(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a suite's curves of time against error, one panel for each motion."""
+    """Return a matplotlib Figure of time against error of all programs, one panel for each motion of the benchmark."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 

@@ -100,7 +100,7 @@ def _numbers(values: list[Any], digits: int = 6) -> str:
 
 
 def _value(text: str) -> float:
-    """Return a number that is given as text, such as ``"51/80"``, ``"5"`` or ``"1e-9"``."""
+    """Return a number from its text, a fraction or decimal: ``"51/80"`` -> 0.6375, ``"1e-9"`` -> 1e-9."""
     numerator, _, denominator = text.partition("/")
     return float(numerator) / float(denominator or 1)
 
@@ -153,7 +153,9 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
     """Return a row (label, text) for each function with jumps or kinks: the times at which it switched.
 
-    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it.
+    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it. ``times`` are all of
+    them, ``switchings`` say which function switched and how; ``start`` and ``stop`` are the first and last time as
+    text.
     """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
@@ -192,7 +194,7 @@ def _conserved(report: "RunReport") -> list[str]:
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
-    """Return rows (label, text) that list the quantities that are not conserved, one row for each reason."""
+    """Return rows (label, text) with the quantities that this motion does not conserve, one row for each reason."""
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
@@ -226,7 +228,10 @@ def _holding(item: "WrittenRecord") -> str:
 
 
 def summary(report: "RunReport") -> list[str]:
-    """Return lines of text about a run, from the data of :func:`facts`; the first line is a title."""
+    """Return the lines that `symrot run` prints about a run; ``report`` is the data of :func:`facts`.
+
+    The first line is a title.
+    """
     scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
     settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]

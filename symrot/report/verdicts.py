@@ -28,9 +28,11 @@ def check(
     progress: Callable[[str], None] = lambda text: None,
     stated: Mapping[str, Any] | None = None,
 ) -> list[Verdict]:
-    """Check a claim (text or LaTeX), or all claims of a file, and return the verdicts.
+    """Check a claim (an equation as text or LaTeX), or all claims of a file, and return the verdicts.
 
-    ``stated`` holds the keyword arguments ``where``, ``body``, ``frame`` and ``sequence`` of :func:`symrot.check`.
+    ``source`` is the claim or the file's path. ``assumptions`` and ``units`` are the texts of the command line;
+    ``repair`` says whether to search for corrections. ``stated`` holds the keyword arguments ``where``, ``body``,
+    ``frame`` and ``sequence`` of :func:`symrot.check`.
 
     A claim in a file that cannot be parsed gets the verdict ``"refused"``.
 
@@ -71,13 +73,16 @@ SIGNS = "=≈≃≤≥⩽⩾<>≠"
 
 
 def _is_file(source: str) -> bool:
-    """Return whether the argument of `symrot check` names a file; a claim contains a relation such as ``==``."""
+    """Return whether ``source``, the argument of `symrot check`, is a file's path and not a claim.
+
+    A claim contains a relation such as ``==``.
+    """
     is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
     return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return verdicts as lines of text.
+    """Return the lines that `symrot check` prints about verdicts; ``source`` is the claim or the file's path.
 
     The verdict on a single claim is shown in full. For a file, only verdicts on claims that are not true are shown in
     full, followed by a count of all verdicts.
@@ -107,7 +112,10 @@ def _full(verdict: Verdict, head: str) -> list[str]:
 
 
 def _with_carets(lines: Sequence[str], repair: Repair) -> list[str]:
-    """Return the lines of a suggested correction, with carets (^) below the characters that differ from the claim."""
+    """Return the lines of a corrected claim, with carets (^) below the characters that the correction changed.
+
+    ``lines`` are the text of the correction ``repair``, broken and indented.
+    """
     rows, place = [], 0
     for line in lines:
         piece = line[INDENT:]

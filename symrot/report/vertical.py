@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class VerticalAngles:
-    """Angles of a line of the body to the vertical, over time.
+    """Angles of a line of the body, such as its symmetry axis, to the vertical, over time.
 
     Attributes
     ----------
@@ -31,7 +31,10 @@ class VerticalAngles:
 
 
 def has_vertical(scene: Any) -> bool:
-    """Return whether a scene has one vertical: the upward vertical of gravity, or the radius of a circular orbit."""
+    """Return whether a scene has one vertical: the upward direction of gravity, or the radius of a circular orbit.
+
+    It has none if no torque is due to gravity or a gravity gradient, or if more than one is.
+    """
     return sum(torque.kind in ("gravity", "gravity_gradient") for torque in scene.torques) == 1
 
 
@@ -78,6 +81,6 @@ def _unit(vector: list[float]) -> Floats:
 
 
 def _angle(first: Floats, second: Floats) -> Floats:
-    """Return the angles between unit vectors, rad, accurate for small angles too."""
+    """Return the angles between the unit vectors ``first[i]`` and ``second[i]``, rad, accurate for small angles too."""
     angles: Floats = np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), np.sum(first * second, axis=1))
     return angles

@@ -28,9 +28,9 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return a table as lines of text, with one column for each power of ten of the error.
+    """Return the table of a study, with one column for each power of ten of the error, as lines of text.
 
-    It gives the shortest time of all methods, and the ratio of each method's time to it.
+    A column has the shortest time of all methods that reach this error, and the ratio of each method's time to it.
     """
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
@@ -43,7 +43,7 @@ def _decades(study: Mapping[str, Any]) -> list[str]:
 
 
 def _short(value: float) -> str:
-    """Return a number as text of at most five characters."""
+    """Return a number as text of at most five characters: 1.234 -> "1.23"; "-" for an infinite number or NaN."""
     if not math.isfinite(value):
         return "-"
     return (
@@ -79,9 +79,9 @@ def _against(study: Mapping[str, Any]) -> list[str]:
 
 
 def lines(study: Mapping[str, Any]) -> list[str]:
-    """Return lines of text about a study of :func:`symrot.bench.comparison.work_precision.study`.
+    """Return the lines of text that `symrot bench SCENE` prints about a study; the first line is a title.
 
-    The first line is the title.
+    ``study`` is the result of :func:`symrot.bench.comparison.work_precision.study`.
     """
     scene, reference, machine = study["scene"], study["reference"], study["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
@@ -149,7 +149,9 @@ def _positive(study: Mapping[str, Any]) -> bool:
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a comparison of two studies: ratios of times by method and power of ten of the error, and least errors.
+    """Return a comparison of two studies of one scene, such as before and after a change, as data.
+
+    It has, for each method, the ratio of the times at each power of ten of the error, and the least errors.
 
     Raises
     ------
@@ -198,7 +200,7 @@ def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
-    """Return lines of text about the comparison of two studies, from the data of :func:`compared`."""
+    """Return lines of text about two studies; ``comparison`` is the data of :func:`compared`."""
     errors = sorted(
         {error for item in comparison["ratios"].values() for error in item["decades"]}, key=float, reverse=True
     )

@@ -22,7 +22,7 @@ OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
-    """The style of a method's curve: colour, marker and dash."""
+    """How a method's curve is drawn in every figure: its colour, marker and dash pattern of matplotlib."""
 
     colour: str
     marker: str
@@ -58,7 +58,8 @@ METHOD_LABELS = {
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
     """Split the runs of a method into two lists of points (error, time): its curve, and the other runs.
 
-    The curve consists of the runs for which no other run is both faster and more accurate, in the order of the error.
+    The curve consists of the runs for which no other run is both faster and more accurate, in the order of the error. A
+    run has a time and an error.
     """
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
@@ -72,7 +73,10 @@ def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float
 
 
 def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
-    """Write the names of methods at the right edge of a plot, close to the ends of their curves, without overlap."""
+    """Write the names of methods at the right edge of a plot, close to the ends of their curves, without overlap.
+
+    ``ends`` are (time at the end of the curve, name, colour).
+    """
     low, high = np.log10(axes.get_ylim())
     ends = sorted(ends)
     heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]
@@ -93,7 +97,7 @@ def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
 
 
 def figure(study: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of a work-precision study."""
+    """Return a matplotlib Figure of a work-precision study: time against error, one curve for each method."""
     from matplotlib.figure import Figure
 
     page = Figure(figsize=(8.0, 5.4))

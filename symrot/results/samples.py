@@ -63,7 +63,10 @@ class Samples(ABC):
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
     def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return, for each sample, whether the Euler angles of a sequence are at gimbal lock, shape (...)."""
+        """Return, for each sample, whether the Euler angles of ``sequence`` are at gimbal lock, shape (...).
+
+        There only the sum or the difference of the first and the third angle is defined.
+        """
         return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
 
     def _to_space(self, vectors_b: Floats) -> Floats:
@@ -77,17 +80,20 @@ class Samples(ABC):
 
     @property
     def polhode(self) -> Floats:
-        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
+        """The polhode, the path of omega in the body on the energy ellipsoid: the same array as :attr:`omega`."""
         return self.omega
 
     @property
     def herpolhode(self) -> Floats:
-        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
+        """The herpolhode, the path of omega in space on the invariable plane: the same array as :attr:`omega_space`."""
         return self.omega_space
 
     @cached_property
     def rotation(self) -> Any:
-        """The attitudes, body to space, as one ``scipy.spatial.transform.Rotation``; motions follow one another."""
+        """The attitudes, body to space, as one ``scipy.spatial.transform.Rotation``.
+
+        Of n motions with m samples each, the n m rotations follow one another, motion after motion.
+        """
         from scipy.spatial.transform import Rotation
 
         return Rotation.from_quat(self.quaternion.reshape(-1, 4)[:, [1, 2, 3, 0]])
@@ -141,11 +147,14 @@ class MotionSamples(Samples):
     @property
     @abstractmethod
     def scene(self) -> Scene:
-        """The scene of the motion."""
+        """The scene of the motion: body, torques, initial state and output quantities."""
 
     @abstractmethod
     def _evaluate(self, *names: str) -> Floats:
-        """Return the named output quantities of the kernel at the samples, shape (..., len(names))."""
+        """Return the output quantities ``names``, such as ``"energy"``, at the samples, shape (..., len(names)).
+
+        The kernel of the scene computes them from times, angular velocities and attitudes.
+        """
 
     @cached_property
     def angular_momentum_body(self) -> Floats:

@@ -106,7 +106,11 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
 
     def _labelled(self) -> list[Labelled]:
-        """Return the derivatives with labels, three quantities for each variable, such as ``omega_by_weight``."""
+        """Return the derivatives with labels, as rows for tables.
+
+        There are three quantities for each variable, such as ``omega_by_weight``, ``quaternion_by_weight`` and
+        ``rotation_by_weight``.
+        """
         items = []
         for number, (variable, unit) in enumerate(zip(self.variables, self.units, strict=True)):
             for quantity, (components, own, frame, meaning) in OUTPUTS.items():

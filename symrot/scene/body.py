@@ -315,7 +315,10 @@ _length = number("a number in m")
 
 
 def _bounded(value: Any, where: str) -> None:
-    """Raise InputError if a dimension, or an item of a list of dimensions, is not a number or is out of range."""
+    """Raise InputError if a dimension, or an item of a list of dimensions, is not a number or is out of range.
+
+    The message names the place ``where``, with the number of the item.
+    """
     if isinstance(value, list | tuple):
         for index, item in enumerate(value):
             _bounded(item, f"{where}[{index}]")

@@ -145,7 +145,10 @@ def present_value(
 
 
 def replaces_shapes(key: str) -> bool:
-    """Return whether a key sets moments of inertia or the centre of mass, which otherwise follow from the shapes."""
+    """Return whether a key, such as ``I_xx``, sets a moment of inertia or the centre of mass.
+
+    These otherwise follow from the shapes of the body, which such a change replaces.
+    """
     return key in (*TENSOR, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
 
@@ -172,7 +175,10 @@ def _set(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _place(scene: _Scene, key: str) -> Place:
-    """Return the place in the scene's content that a key names; raise InputError if there is none or more than one."""
+    """Return the place in the scene's content of the value that ``key`` names, such as ``omega_2`` or ``body.mass``.
+
+    A key that names nothing, or more than one value, raises InputError.
+    """
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")
     if key in SHORT:
@@ -200,7 +206,10 @@ def _place(scene: _Scene, key: str) -> Place:
 
 
 def path_of(key: str) -> Path:
-    """Return a path as keys and indices: ``torque[0].weight`` -> ``("torque", 0, "weight")``; () if it is no path."""
+    """Return a dotted name as a path of keys and indices: ``torque[0].weight`` -> ``("torque", 0, "weight")``.
+
+    The result is () if ``key`` is no such name.
+    """
     steps: list[str | int] = []
     position = 0
     for match in _STEP.finditer(key):
@@ -299,7 +308,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content.
+    """Return the three components of the vector at a path of the content, to change one of them.
 
     If the content gives the vector in another form, such as ``omega_space``, the components that were read are used.
     """
@@ -356,7 +365,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
 
 
 def _tensor(scene: _Scene) -> list[list[Any]]:
-    """Return the rows of the inertia tensor: as the content gives it, or else as computed from the shapes."""
+    """Return the rows of the scene's inertia tensor: as the content gives it, or else as computed from the shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:
             return [[a, 0, 0], [0, b, 0], [0, 0, c]]

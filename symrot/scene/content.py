@@ -57,7 +57,7 @@ def _scalar_first(rotation: Any, where: str) -> list[float]:
 
 
 def toml_text(content: Content) -> str:
-    """Return the content of a scene as TOML text; numbers keep their exact values."""
+    """Return the content of a scene as TOML text, such as a scene file; numbers keep their exact values."""
     lines: list[str] = []
     _write_table(content, "", lines)
     return "\n".join(lines).strip() + "\n"
@@ -79,7 +79,11 @@ def _write_table(content: Content, name: str, lines: list[str]) -> None:
 
 
 def _is_section(key: str, value: Any, name: str) -> bool:
-    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables."""
+    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables.
+
+    ``key`` is its key and ``name`` the dotted name of the table that contains it; other values are written as ``key =
+    value``.
+    """
     if isinstance(value, list):
         return bool(value) and all(isinstance(item, dict) for item in value)
     return isinstance(value, dict) and not name
@@ -95,7 +99,10 @@ def _quoted(text: str) -> str:
 
 
 def _value(value: Any) -> str:
-    """Return a value as TOML on one line; a fraction becomes exact text, which scenes accept as a number."""
+    """Return a value as TOML on one line, such as ``[1, 2.5]``.
+
+    A fraction becomes text, such as ``"1/3"``, which scenes accept as a number.
+    """
     match value:
         case bool():
             return str(value).lower()

@@ -112,9 +112,9 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
 
 
 def _longest_key(text: str) -> int:
-    """Return about how many parts the longest dotted key in TOML text has; it is only off by one or two.
+    """Return an estimate of the number of parts of the longest dotted key (such as ``a.b.c``) in TOML text.
 
-    The time and memory that tomllib needs are quadratic in this number, so a file with very long keys is refused.
+    The time and memory that tomllib needs are quadratic in this number, so a file with a very long key is refused.
     """
     longest = run = 0
     for part in text.split("."):

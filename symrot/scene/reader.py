@@ -58,16 +58,19 @@ def fail(where: str, expectation: str, value: object = ..., reason: str = "") ->
 
 
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
-    """Return the value if it is a table; raise InputError otherwise."""
+    """Return the value if it is a table (a mapping); raise InputError otherwise.
+
+    ``expectation`` is what the message says was expected there.
+    """
     if not isinstance(value, Mapping):
         fail(where, expectation, value)
     return value
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key, each read by the rule in ``entries``; a missing key gets its default.
+    """Return the values of a table by key, each read by its rule in ``entries``; a missing key gets its default.
 
-    Raise InputError if a key is unknown, or if a key that ``entries`` requires is missing.
+    A key that is unknown, or missing although its rule requires it, raises InputError; ``what`` names the table there.
     """
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
@@ -136,7 +139,7 @@ def text(value: Any, where: str) -> str:
 
 
 def flag(value: Any, where: str) -> bool:
-    """Return the value if it is true or false; raise InputError otherwise."""
+    """Return the value if it is true or false; raise InputError, which names the place ``where``, otherwise."""
     if not isinstance(value, bool):
         fail(where, "true or false", value)
     return value

@@ -161,7 +161,8 @@ def read_samples(
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
     """Raise InputError unless the times increase, with two samples or more between consecutive switching times.
 
-    A switching time occurs twice: for the torque before the jump and after it.
+    A switching time occurs twice: for the torque before the jump and after it. ``place`` names the samples in the
+    message.
     """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
@@ -190,7 +191,10 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
 
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
-    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``."""
+    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``.
+
+    Each other line holds one sample. ``place`` names the file in errors.
+    """
     expectation = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
         content = read_input(path, LARGEST_FILE)

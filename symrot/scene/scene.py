@@ -83,7 +83,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques: first of the torques given by formulas, then of the table."""
+        """The kinds of all torques, such as ``("gravity", "damping")``; ``"table"`` comes last if there are samples."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 
@@ -278,7 +278,7 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return body and torques of a scene; :meth:`Scene.to_dict` refuses to write them if they were replaced."""
+    """Return the body, the torques and the table of a scene: the parts that :meth:`Scene.to_dict` cannot write anew."""
     return scene.body, scene.torques, scene.table
 
 

@@ -60,23 +60,26 @@ class Torque(NamedTuple):
     frame: str = "body"
 
     def number(self, name: str) -> Fraction:
-        """Return a constant of the torque that is a number."""
+        """Return the constant ``name`` of the torque, which is a number, such as ``"weight"``."""
         value = self.values[name]
         assert isinstance(value, Fraction)
         return value
 
     def vector(self, name: str) -> tuple[Fraction, ...]:
-        """Return a constant of the torque that is a vector or an attitude."""
+        """Return the constant ``name`` of the torque: a vector, such as ``"center_of_mass"``, or a quaternion."""
         value = self.values[name]
         assert isinstance(value, tuple)
         return value
 
     def constant(self, name: str, component: int | None) -> Fraction:
-        """Return a constant that is a number (``component`` is None), or the component with this index of a vector."""
+        """Return the constant ``name``, a number (``component`` is None), or its component with this index, from 0."""
         return self.number(name) if component is None else self.vector(name)[component]
 
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
-        """Return a copy of the torque in which one number, named as in :meth:`constant`, has another value."""
+        """Return a copy of the torque in which one number has the value ``value``.
+
+        ``name`` and ``component`` name it as in :meth:`constant`.
+        """
         if component is None:
             return self._replace(values={**self.values, name: value})
         vector = tuple(value if k == component else entry for k, entry in enumerate(self.vector(name)))
@@ -116,7 +119,11 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Return one component of a torque as formula text; the scene gives it as a formula or as a number."""
+    """Return one component of a torque, a formula or a number in the scene, as formula text.
+
+    Text that is no formula, is too long or too deep, or divides by zero raises InputError, which names the place
+    ``where``.
+    """
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
@@ -132,7 +139,7 @@ def _formula(value: Any, where: str) -> str:
 
 
 def _divides_by_zero(node: expression.Node) -> bool:
-    """Return whether a formula contains a division by the number zero."""
+    """Return whether a formula contains a division by a constant that is zero, as in ``1/(2 - 2)``."""
     if any(map(_divides_by_zero, expression.children(node))):
         return True
     divisor = node[2] if node[0] == "/" else node[1] if node[0] == "**" and node[2] < 0 else None
@@ -193,7 +200,11 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the weight, the centre of mass and the unit vector of gravity; missing values are taken from the body."""
+    """Return the values of a ``gravity`` torque: the weight, the centre of mass, and the unit vector ``direction``.
+
+    What the table ``values`` does not give is taken from the body: its mass times ``gravity``, and its centre of mass.
+    ``where`` is the place of the torque, for errors.
+    """
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -231,7 +242,8 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
     """Return the values of an ``expression`` torque, after a check that its formulas contain only known names.
 
-    If a formula contains pi, pi is added to the parameters.
+    Known are its parameters and the quantities of the motion, such as omega_1. If a formula needs pi, pi is added to
+    the parameters.
     """
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
@@ -253,7 +265,11 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
-    """Raise InputError if a formula contains ``clip(u, low, high)`` with low > high, both numbers or parameters."""
+    """Raise InputError if a formula contains ``clip(u, low, high)`` with low > high.
+
+    Only limits that are numbers or parameters are compared; ``values`` holds the parameters by name. The message names
+    the component ``index`` of the torque at ``where``.
+    """
     for child in expression.children(node):
         _check_clips(child, values, where, index)
     if node[0] != "call" or node[1] != "clip":

@@ -30,7 +30,7 @@ MOST_TRAJECTORIES = 10**12
 
 @dataclass(frozen=True)
 class Axis:
-    """One value that varies: its place in the scene, and the law of its values."""
+    """One value that varies: its place in the scene, and the law of its values, such as a normal distribution."""
 
     target: Target
     law: Law
@@ -46,7 +46,7 @@ class Draws:
 
 @dataclass(frozen=True)
 class Design:
-    """What varies in a sweep, with the number of trajectories, the sampling and the seed."""
+    """What varies in a sweep, with the number of trajectories, the sampling (how values are drawn) and the seed."""
 
     axes: tuple[Axis, ...]
     attitudes: str
@@ -60,7 +60,7 @@ class Design:
 
     @cached_property
     def grid_points(self) -> int:
-        """The number of points in the product of all grids."""
+        """The number of points in the product of all grids: 6 for grids of 2 and of 3 values; 1 without grids."""
         return prod(self._grid)
 
     @property
@@ -143,7 +143,7 @@ def _choice(value: object, known: Sequence[str], where: str) -> None:
 
 
 def _require_apart(axes: Sequence[Axis]) -> None:
-    """Raise InputError if two of the varied values may set the same number of the scene, such as one rate."""
+    """Raise InputError if two varied values may set the same number, as ``omega_1`` and ``initial.omega[0]`` do."""
     initial = [axis.target.path for axis in axes if axis.target.path[:1] == ("initial",)]
     rates = [axis.target.name for axis in axes if axis.target.unit == "rad/s" and axis.target.name.startswith("omega_")]
     if initial and rates:

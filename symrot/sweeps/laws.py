@@ -73,7 +73,7 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Grid:
-    """A law that lists the values to be used, one after the other."""
+    """A law that lists the values of a quantity; each is used with all values of the other grids."""
 
     values: tuple[float, ...]
 

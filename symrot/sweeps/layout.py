@@ -106,7 +106,7 @@ class Store(Protocol):
         """Return the array of statistics called ``name``, such as ``energy_mean``, or None if there is none."""
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.
@@ -173,7 +173,7 @@ def difference(own: Mapping[str, str], other: object) -> str:
 
 
 def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a chunk, without status and messages, as a map from the names in the header.
+    """Return the arrays of a chunk by name, as the header of a store names them, without status and messages.
 
     ``names`` are the names of the values that vary, in the order of the draws.
     """
@@ -184,7 +184,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
 
 def messages_of(chunk: Chunk) -> NDArray[Any]:
-    """Return the messages of a chunk, one text for each trajectory."""
+    """Return the messages of a chunk, one text for each trajectory; it is empty for a trajectory that was computed."""
     texts = np.full(chunk.stop - chunk.start, "", dtype=object)
     for row, message in chunk.messages.items():
         texts[row] = message

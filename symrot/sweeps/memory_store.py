@@ -47,7 +47,7 @@ class MemoryStore:
         return [each for each in self.header.ranges() if self._arrays[STATUS][each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk."""
+        """Copy the results of a chunk into the arrays."""
         own = arrays_of(chunk, self.header.inputs) | {MESSAGE: messages_of(chunk), STATUS: chunk.status}
         for name, values in own.items():
             self._arrays[name][chunk.start : chunk.stop] = values
@@ -65,7 +65,7 @@ class MemoryStore:
         return name in self._arrays
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.

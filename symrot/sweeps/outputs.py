@@ -154,7 +154,10 @@ def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
 
 
 def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
-    """Return the times, s, at which the outputs need samples: all sample times, or fewer if that is enough."""
+    """Return the times, s, at which the motions must be sampled so that all outputs can be computed.
+
+    These are all sample times of the sweep, ``times``, or fewer if every output is at a single time.
+    """
     whole = any(output.reduction != "at" for output in outputs)
     own = [output.time for output in outputs if output.reduction == "at"]
     return np.unique([*(times.tolist() if whole else []), *own])

@@ -149,7 +149,7 @@ class ParquetStore:
         return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         A text ``alone`` that is not empty asks to remove the values of the outputs; raise InputError then, since this
         store cannot remove them.
@@ -172,7 +172,10 @@ def _parts(name: str) -> list[str]:
 
 
 def _rows(table: Table, times: NDArray[np.float64]) -> list[dict[str, Any]]:
-    """Return an array of statistics as rows (name, t, index, value); index counts percentiles or bins."""
+    """Return the array of statistics ``table`` as rows (name, t, index, value) of a file.
+
+    ``t`` is one of ``times``, or None if the array has no times; ``index`` counts percentiles or bins.
+    """
     rows = []
     for place, value in np.ndenumerate(table.values):
         axes = dict(zip(table.dimensions, place, strict=True))

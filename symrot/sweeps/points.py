@@ -90,7 +90,10 @@ def _mixed(words: Words) -> Words:
 
 
 class _Sobol:
-    """The Sobol points of one sweep. Ranges of points that are requested in order need no time to skip points."""
+    """The Sobol points of one sweep, which fill the unit cube evenly.
+
+    Ranges of points that are requested in order need no time to skip points.
+    """
 
     def __init__(self, dimensions: int, seed: int) -> None:
         self._dimensions, self._seed, self._lock = dimensions, seed, Lock()

@@ -36,7 +36,7 @@ def cores() -> int:
 
 
 def packed(job: Job) -> bytes:
-    """Return a job as bytes for :func:`compute_packed`."""
+    """Return a job as bytes, so that it is converted only once for all chunks; :func:`compute_packed` takes them."""
     return pickle.dumps(job)
 
 
@@ -126,7 +126,7 @@ def _end_with(sentinel: int) -> None:
 
 
 def _stop(pool: Any) -> None:
-    """End the processes of a pool at once; chunks that they are computing are lost and can be computed again."""
+    """End the processes of ``pool`` at once, after Ctrl-C or an error; chunks that they are computing are lost."""
     processes = list((pool._processes or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:

@@ -310,5 +310,5 @@ def _keys(values: Floats) -> Keys:
 
 
 def _values(keys: Keys) -> Floats:
-    """Return the doubles to which :func:`_keys` assigns the given integers."""
+    """Return the doubles for the integers ``keys``, the inverse of :func:`_keys`."""
     return np.where(keys & _SIGN, keys ^ _SIGN, ~keys).view(np.float64)

@@ -41,7 +41,7 @@ LARGEST_IN_MEMORY = 4_000_000_000  # bytes of results without a file
 
 
 def _silent(text: str) -> None:
-    """Ignore a message about progress."""
+    """Do nothing with a message about progress: the default of ``note`` in :func:`sweep`."""
 
 
 @dataclass(frozen=True)
@@ -270,7 +270,7 @@ def _require_same(present: str, statistics: str, path: Path | None) -> None:
 
 
 def _require_memory(header: Header) -> None:
-    """Raise InputError if the results of a sweep are too large for memory."""
+    """Raise InputError if the results that ``header`` describes are too large for memory; a file is then needed."""
     sizes = [len(header.times) if TIME in variable.dimensions else 4 for variable in header.variables]
     size = 8 * header.count * sum(sizes)
     if size > LARGEST_IN_MEMORY:
@@ -323,7 +323,10 @@ def _job(
 
 
 def _content(scene: Scene) -> Content | None:
-    """Return the content of the file or dict from which a scene was read; None if the scene was changed later."""
+    """Return the content of the file or dict from which a scene was read; None if the scene was changed later.
+
+    Numbers in the file can vary in a sweep only if this content is known.
+    """
     try:
         return scene.to_dict()
     except InputError:  # only values of its constants can vary

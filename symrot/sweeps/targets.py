@@ -140,9 +140,10 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of the constants that a number in the scene file may change.
+    """Return the names of the constants of motion's equations, such as ``A``, that the number at ``path`` may change.
 
-    The result depends only on the table that contains the number, so that it is the same for all values.
+    The result depends only on the table of the scene file that contains the number, so that it is the same for all
+    values.
     """
     places = constant_places(scene)
     if path[0] == "initial":

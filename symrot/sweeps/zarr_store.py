@@ -75,7 +75,10 @@ class ZarrStore:
         return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:
-        """Create all arrays, still without values, in a new folder that gets its final name when it is complete."""
+        """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package.
+
+        The folder gets its final name when it is complete.
+        """
         part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
         shutil.rmtree(part, ignore_errors=True)
         try:
@@ -134,7 +137,7 @@ class ZarrStore:
 
     @property
     def finished(self) -> bool:
-        """Whether statistics were written already."""
+        """Whether the statistics of the sweep are stored, which happens once, after its last chunk."""
         return bool(self._group.attrs.get(FINISHED, False))
 
     @property
@@ -146,7 +149,7 @@ class ZarrStore:
         return str(self._group.attrs.get(REMOVED, ""))
 
     def finish(self, tables: list[Table], alone: str) -> None:
-        """Store the statistics.
+        """Store the statistics ``tables`` at the end of a sweep.
 
         ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
         these values are then removed. If it is empty, the values stay.
@@ -172,7 +175,7 @@ class ZarrStore:
 
 
 def _fast(zarr: Any) -> Any:
-    """Return the fastest compressor: stronger ones gain little, since the digits of results are nearly random."""
+    """Return the fastest compressor of the package ``zarr``; others save little, as digits of results look random."""
     return zarr.codecs.ZstdCodec(level=1)
 
 

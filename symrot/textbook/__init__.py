@@ -83,7 +83,7 @@ class Condition(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line of a document with a relation sign that states no new formula.
+    """A line of a document with a relation sign (such as =) that states no new formula, for example a repetition.
 
     ``kind`` is a key of :data:`LINE_KINDS`. ``claim`` is the claim that states the formula, or an empty text.
     """
@@ -119,7 +119,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def conditions() -> tuple[Condition, ...]:
-    """Return the conditions that documents do not state and that the exact engine proves, but cannot find by itself."""
+    """Return the conditions that documents do not state, which symrot proves to suffice but cannot find by itself."""
     return tuple(
         Condition(entry["claim"], tuple(entry["given"]), entry["words"]) for entry in _content("errata")["condition"]
     )

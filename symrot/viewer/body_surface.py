@@ -135,7 +135,7 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the other coordinates.
+    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the others.
 
     A shape is the image of a box of coordinates, such as radius, angle and height. An angle from 0 to 2 pi gives no
     faces, since its two ends are the same points inside the body.

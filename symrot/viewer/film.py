@@ -34,7 +34,7 @@ VIEW = {"elev": 22.0, "azim": -52.0}
 
 
 def require_encoder(path: Path) -> None:
-    """Raise InputError if a package needed to write a film to this path is not installed."""
+    """Raise InputError if a package needed to write a film to ``path``, such as matplotlib, is not installed."""
     if find_spec("matplotlib") is None:
         raise InputError(
             f"{path}: expected matplotlib, but it is not installed; install it with pip install 'symrot[film]'"
@@ -79,7 +79,10 @@ def write_film(
 
 
 def _times(trajectory: Trajectory) -> Floats:
-    """Return the times of the frames, evenly spaced over the whole motion."""
+    """Return the times of the frames of a film, evenly spaced over the whole motion.
+
+    The film lasts longer for a faster body, within limits.
+    """
     start, stop = float(trajectory.t.min()), float(trajectory.t.max())
     fastest = float(np.max(np.linalg.norm(trajectory.omega, axis=1)))
     duration = min(max(fastest * (stop - start) / FASTEST, 2.0), LONGEST)
@@ -87,7 +90,7 @@ def _times(trajectory: Trajectory) -> Floats:
 
 
 def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
-    """Yield the frames as arrays of pixels, shape (height, width, 3), 8 bits per colour."""
+    """Yield the frame for each of ``times`` as an array of pixels, shape (height, width, 3), 8 bits per colour."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -141,7 +144,8 @@ def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
 def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float) -> None:
     """Draw one frame: the body, the axes of space, and the path of the body's axis.
 
-    ``part`` is the fraction of the motion up to this frame; the path up to it is drawn in a strong colour.
+    ``polygons`` are the faces of the body and ``shades`` their brightness. ``part`` is the fraction of the motion up to
+    this frame; the path up to it is drawn in a strong colour.
     """
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -188,7 +192,7 @@ def _curves(patch: Patch) -> list[list[Point]]:
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch.
+    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch of the body's surface.
 
     Neighbouring quarters of a round surface differ in brightness, so that its rotation can be seen.
     """

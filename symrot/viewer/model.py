@@ -208,7 +208,7 @@ def _rest(value: Fraction) -> float:
 
 
 def _patch(patch: Patch, size: float) -> dict[str, Any]:
-    """Return a patch of the body's surface as data for JSON; its points are divided by the size of the body."""
+    """Return a patch of the body's surface as data for JSON; its points are divided by the body's ``size``, m."""
     points = [round(component / size, DIGITS) + 0.0 for point in patch.points for component in point]
     kind = {"mesh": True} if patch.is_mesh else {}
     return {"points": points, "rows": patch.rows, "columns": patch.columns, "hole": patch.is_hole, **kind}

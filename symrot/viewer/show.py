@@ -83,7 +83,7 @@ def in_frame(trajectory: Trajectory) -> str:
 
 
 def _state_at(scene: Scene, time: Fraction) -> Initial:
-    """Return the state of a scene's motion at a given time, s, for a page that starts at this time."""
+    """Return omega and quaternion of a scene's motion at a time, s, for a page whose motion starts then."""
     state = propagator(with_attitude(scene))([float(time)])
     first, second, third = map(Fraction, state.omega[0].tolist())
     a, b, c, d = map(Fraction, state.quaternion[0].tolist())

@@ -1,1 +1,4 @@
-"""The functions that emit, certify, audit and bound kernels and that check an installation, for the command line."""
+"""The work behind the commands that emit, certify, audit and bound kernels, print derivations and check the install.
+
+Some of these functions are public.
+"""

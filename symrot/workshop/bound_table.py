@@ -27,12 +27,18 @@ SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in differe
 
 
 def _texts() -> dict[str, str]:
-    """Return a map from kernel name to C text, without the comment at its head, which would state the bounds."""
+    """Return a map from the name of each library kernel to its C functions as text.
+
+    The comment at the head of the text is left out, because it states the bounds that are to be computed from the text.
+    """
     return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the tasks that compute the bounds of all library kernels, each under the key of its bound in the table."""
+    """Return the tasks of bounding rounding errors, for all outputs of all library kernels.
+
+    They are a map from the key under which the table stores the bound, a hash of the task, to the task.
+    """
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -57,12 +63,18 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of the bounds in the table that are smaller than the error at their stored worst point."""
+    """Return the keys of the bounds in the table that are too small, given the tasks that the table must have, by key.
+
+    A bound is too small if it is below the error that is computed now at the worst point stored with it.
+    """
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a bound is finite and not smaller than the error at the worst point stored with it."""
+    """Return whether a stored bound is finite and not smaller than the error at the worst point stored with it.
+
+    ``search`` is the stored result for ``task``; None, no result, gives False.
+    """
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)

@@ -32,7 +32,10 @@ PRECISIONS = {"double": "", "float": "f"}
 def rounding_problem(
     kernel: KernelText, ranges: Sequence[str], precision: str
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
-    """Return the operations of a kernel, the data for bounding their rounding errors, and the box of the inputs.
+    """Return what a search for bounds of a kernel's rounding errors needs, as a tuple of three.
+
+    They are the operations of the kernel, its own :class:`RoundingProblem` (symbols and restrictions of inputs), and
+    the box: the range of each input, after the user's ``ranges`` replaced the kernel's own.
 
     Parameters
     ----------
@@ -69,7 +72,11 @@ def rounding_problem(
 def _check_unit(
     group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
 ) -> None:
-    """Raise InputError if the box contains no unit quaternion: every bound would hold vacuously."""
+    """Raise InputError if the box contains no unit quaternion, because then every bound would hold vacuously.
+
+    ``group`` lists the four components of the quaternion by index text, such as ``"q[1]"``; ``box`` has the range of
+    each input.
+    """
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
     spare = Fraction(UNIT_NORM)
@@ -79,7 +86,11 @@ def _check_unit(
 
 
 def _operations(kernel: KernelText, precision: str) -> Operations:
-    """Return the operations of a kernel, under the kernel's name without the prefix ``symrot_``."""
+    """Return the operations of a kernel's C function in ``precision``, double or float.
+
+    Their name is that of the function without the prefix ``symrot_``. InputError is raised for a scene's kernel in
+    float.
+    """
     if precision != "double" and isinstance(kernel, SceneText):
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
     name = f"{kernel.name}{PRECISIONS[precision]}"
@@ -87,7 +98,7 @@ def _operations(kernel: KernelText, precision: str) -> Operations:
 
 
 def require_known(kernel: str) -> None:
-    """Raise InputError unless a name is a kernel of the library, a scene or a file.
+    """Raise InputError unless ``kernel`` is the name of a library kernel or shipped scene, or the path of a file.
 
     The message suggests a similar name, if there is one.
     """
@@ -100,15 +111,15 @@ def require_known(kernel: str) -> None:
 
 
 def _known_text(kernel: str) -> KernelText:
-    """Return the texts of a kernel of the library or of a scene, after :func:`require_known`."""
+    """Return the texts of a library kernel or of a scene's kernel; raise InputError for an unknown name."""
     require_known(kernel)
     return kernel_text(kernel)
 
 
 def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the section ``rounding`` of a kernel's certificate, for double and, in the library, float.
+    """Return the section ``rounding`` of a kernel's certificate, the bounds of its errors for doubles as data.
 
-    The parameters are as for :func:`rounding_problem`.
+    A library kernel also gets those for floats. The parameters are as for :func:`rounding_problem`.
     """
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
     single = rounding_problem(kernel, ranges, "float")[0] if isinstance(kernel, LibraryText) else None
@@ -118,7 +129,10 @@ def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: KernelText) -> Iterator[None]:
-    """Replace index texts, such as "y[2]", by the scene's names in errors raised inside a ``with`` block."""
+    """Run a ``with`` block; in an InputError from it, write the scene's names in place of index texts.
+
+    The message then says, for example, ``omega_3`` and not ``y[2]``.
+    """
     try:
         yield
     except InputError as reason:
@@ -149,7 +163,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: KernelText) -> dict[str, str]:
-    """Return a map from index text, such as "y[2]", to the scene's name; empty for a library kernel."""
+    """Return a map from index text to a scene's name: ``"y[2]"`` -> ``"omega_3"``; empty for a library kernel."""
     if not isinstance(kernel, SceneText):
         return {}
     return {place: symbol for place, (symbol, _) in kernel.inputs.components.items()}
@@ -176,7 +190,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return lines of text about bounds of rounding errors, from the data of :func:`facts`."""
+    """Return the lines that `symrot bound` prints; ``section`` is the data of :func:`facts`."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -240,7 +254,10 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return lines of text about the largest box, from the data of :func:`target_facts`."""
+    """Return the lines that `symrot bound` prints about the largest box;
+
+    ``resized`` is the data of :func:`target_facts`.
+    """
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

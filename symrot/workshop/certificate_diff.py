@@ -23,16 +23,20 @@ LONGEST = 200  # largest number of characters of a line or reason in a message
 
 
 def kernel_of(name: str) -> str | None:
-    """Return the kernel of the library or the shipped scene whose C function has this name, or None."""
+    """Return the library kernel or the shipped scene to which the C function ``symrot_NAME`` belongs, or None.
+
+    A library kernel has the name of its function; for a scene it is ``SCENE_rates``.
+    """
     if is_kernel(name):
         return name
     return next((scene for scene in shipped_names() if scene_kernel_name(scene) == name), None)
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and a description of the first difference between the files next to a certificate and emitted files.
+    """Return ": " and a description of the first difference between the files of a kernel and the emitted ones.
 
-    The text is empty if the files are equal, or if symrot has no kernel of this name.
+    The files are those next to ``certificate``, the path of NAME.cert.json. The text is empty if the files are equal,
+    or if symrot has no kernel of this name. It explains why a hash in the certificate does not match.
     """
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)
@@ -63,9 +67,9 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark in brackets: that an edited C text has lost the kernel's formulas, or performs other operations.
+    """Return a remark in brackets on an edited C text: it has lost the formulas, or performs other operations.
 
-    The remark is empty if the text performs the same operations.
+    ``emitted`` is the kernel as symrot prints it. The remark is empty if the text performs the same operations.
     """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}

@@ -74,7 +74,10 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether object code differs from the C text although its compiler flags must preserve the bits of results."""
+        """Whether a compiler made object code that differs from the C text, although its flags must preserve every bit.
+
+        It is False if object code was not compared in this call.
+        """
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:
@@ -176,7 +179,7 @@ class RoundingBounds:
 
     @property
     def largest(self) -> float:
-        """The largest of the outputs' error bounds."""
+        """The largest of the error bounds of all outputs; their units may differ."""
         return max(output.bound for output in self.outputs)
 
     def __str__(self) -> str:
@@ -452,7 +455,11 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return the ranges of inputs as texts NAME=LOW:HIGH; each float is written as an exact fraction."""
+    """Return the ranges of inputs as texts NAME=LOW:HIGH, the form of the command line.
+
+    ``box`` is a map from NAME to (LOW, HIGH), or a sequence of such texts, returned unchanged. Each float is written as
+    an exact fraction. InputError is raised for another value.
+    """
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):

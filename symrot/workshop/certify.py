@@ -47,7 +47,7 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the statements that symrot proves about the kernel of a certificate; None for an unknown kernel.
+    """Return the statements that symrot proves about the kernel that the certificate ``data`` names; None if unknown.
 
     They are derived and proven once, then stored in the cache under the hash of symrot's source files.
     """
@@ -69,7 +69,10 @@ def _proven_statement(data: Data) -> Data | None:
 
 @cache
 def _programs() -> str:
-    """Return the SHA-256 of all source files of symrot and of the version of SymPy."""
+    """Return the SHA-256 of all source files of symrot and of the version of SymPy, for keys of the cache.
+
+    Any change of the programs that prove a statement so makes the stored statements unusable.
+    """
     root = Path(symrot.__file__).parent
     digest = sha256(version("sympy").encode())
     for path in sorted(source for source in root.rglob("*") if source.suffix in (".py", ".toml", ".v", ".c")):
@@ -131,7 +134,9 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Audit certificates; return a map from each path to the lines of :func:`audit_file`. Many paths share processes.
+    """Audit certificates; return a map from each path to its statements, the lines of :func:`audit_file`.
+
+    Several processes share the work if there are many paths. The other parameters are those of :func:`audit_file`.
 
     Raises
     ------
@@ -161,7 +166,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return a list of one line, which says what still holds of any certificate under these compiler flags.
+    """Return a list of one line, which says what of any certificate holds for code compiled with ``flags``.
 
     Raises
     ------
@@ -285,7 +290,10 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
-    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind."""
+    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind.
+
+    ``certificates`` maps the name of a kernel to the data of its certificate.
+    """
     by_kernel = {name: proofs(data) for name, data in certificates.items()}
     width = max(map(len, by_kernel))
     text_lines = [
@@ -299,19 +307,22 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether object code differs from the C text although its compiler flags must preserve the bits."""
+    """Return whether one of the certificates records object code that differs from the C text.
+
+    Only object code counts whose compiler flags must preserve every bit of the results.
+    """
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
 def proofs(data: Data) -> tuple[str, ...]:
-    """Return the names of the kinds of proof in a certificate, in the order of ``PROOFS``."""
+    """Return the kinds of proof in a certificate, such as ``("laws", "C text")``, in the order of ``PROOFS``."""
     compared = object_code.holds(data.get("objects"))
     sections = (data["laws"], data["coq"], data["readback"], data.get("rounding"), compared)
     return tuple(proof for proof, section in zip(PROOFS, sections, strict=True) if section)
 
 
 def _emitted(path: str) -> str:
-    """Return the name of the kernel or shipped scene to which a C file or certificate belongs.
+    """Return the name of the kernel or shipped scene to which the C file or certificate at ``path`` belongs.
 
     Raise InputError or CertificateError unless the file is exactly as symrot emits it.
     """
@@ -340,7 +351,7 @@ def _emitted(path: str) -> str:
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return lines of text about a certificate.
+    """Return the lines that `symrot certify` prints about a certificate.
 
     ``compared`` says whether object code was compared in this call. If not, the verdicts on object code are from an
     earlier call, and the text only mentions them.

@@ -35,7 +35,7 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return the theorems and Coq's result, both from :func:`prove`, as data for JSON."""
+    """Return the theorems and Coq's result as data for JSON; the arguments are those and results of :func:`prove`."""
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],
@@ -53,7 +53,7 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return lines of text about Coq's result, from :func:`prove`."""
+    """Return lines of text about Coq's result, from :func:`prove`; None means that nothing was checked."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]

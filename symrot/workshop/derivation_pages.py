@@ -1,4 +1,4 @@
-"""Pages of derivations with their figures: printed, written to a folder, and compared with the files there."""
+"""Pages of derivations with their figures: printed, written to a folder, or compared with the files in a folder."""
 
 import re
 import shutil
@@ -45,7 +45,7 @@ def _quiet(text: str) -> None:
 
 
 def illustrated(page: Page) -> PrintedPage:
-    """Return a page with its figures and its lesson.
+    """Return a derivation's page with its figures and its lesson: question, numbers, a common mistake for students.
 
     A figure is at the top of the page or below the heading of its section. A page with few figures has at least one at
     the top.
@@ -84,14 +84,14 @@ def illustrated(page: Page) -> PrintedPage:
 
 @cache
 def _page(name: str) -> PrintedPage:
-    """Return the page of a derivation with its figures and its lesson; it is made once per process."""
+    """Return the page of the derivation ``name`` with its figures and its lesson; it is made once per process."""
     return illustrated(derivation(name))
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return a map from file name to text of the printed pages of all derivations, and of their figures.
+    """Return a map from file name to text: the pages of all derivations in Markdown, and their figures in SVG.
 
-    The table of contents (``README.md``) comes first.
+    The table of contents (``README.md``) comes first. ``say`` is called with a line of text before each derivation.
     """
     derived = {}
     for name in names():
@@ -155,7 +155,7 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
 
 
 def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> list[Path]:
-    """Write a few derivations into a directory for students, and return the paths.
+    """Write the pages of a few derivations into a directory, for students, and return the paths.
 
     Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions
     are those of :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each
@@ -190,12 +190,18 @@ LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
 
 
 def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
-    """Return the names of the chosen derivations and of those whose pages are in a directory already."""
+    """Return the names of the chosen derivations and of those whose pages are in a directory already.
+
+    ``suffix`` is that of the pages, such as ``.html``.
+    """
     return {name for name in names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
-    """Return a text in which links to derivations other than ``present`` are plain text."""
+    """Return ``text``, the text of a page, in which links to derivations that are not in ``present`` are plain text.
+
+    ``link`` matches a link; its groups ``page`` and ``label`` are the derivation and the words of the link.
+    """
     missing = set(names()) - present
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
@@ -218,7 +224,7 @@ FORMS: dict[str, Callable[[Chapters], dict[str, bytes]]] = {"latex": _latex, "ht
 
 
 def _converted(directory: Path, figures: list[Figure]) -> list[Path]:
-    """Convert figures to PDF, and return the paths of the files."""
+    """Convert figures to PDF files in ``directory`` with the program :data:`CONVERTER`; return their paths."""
     paths = []
     for figure in figures:
         path = (directory / figure.file).with_suffix(".pdf")
@@ -230,9 +236,10 @@ def _converted(directory: Path, figures: list[Figure]) -> list[Path]:
 
 
 def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
-    """Print every page and every figure into a directory and return the paths of the files that changed.
+    """Write every page and figure into a directory; return the paths of the files that changed or were deleted.
 
-    Pages and figures that are no longer in the catalogue are deleted; other files are not touched.
+    Pages and figures that are no longer in the catalogue are deleted; other files are not touched. ``say`` is called
+    with a line of text before each derivation.
     """
     directory = Path(directory)
     (directory / "figures").mkdir(parents=True, exist_ok=True)
@@ -252,9 +259,9 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return a unified diff for each page or figure in a directory that differs from the newly printed one.
+    """Return a list with a unified diff for each page or figure in a directory that differs from what is printed now.
 
-    The list is empty if all files are up to date.
+    The list is empty if all files are up to date. ``say`` is called with a line of text before each derivation.
     """
     directory = Path(directory)
     printed = pages(say)
@@ -271,12 +278,12 @@ def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
 
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
-    """Return the pages and figures in a directory that symrot printed earlier and that no longer exist."""
+    """Return the files in a directory that symrot printed earlier and that are not in ``printed``, today's files."""
     files = [*sorted(directory.glob("*.md")), *sorted(directory.glob("figures/*.svg"))]
     others = (path for path in files if path.relative_to(directory).as_posix() not in printed and path.is_file())
     return [path for path in others if _mark(path).encode() in path.read_bytes()]
 
 
 def _mark(path: Path) -> str:
-    """Return words that symrot prints into every file of this kind, by which it recognises its own files."""
+    """Return words that symrot prints into every page or figure, by which it recognises a file as its own."""
     return 'class="sf" role="img"' if path.suffix == ".svg" else f"printed by `symrot derive {path.stem}`; do not edit."

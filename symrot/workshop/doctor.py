@@ -32,7 +32,7 @@ def _version(package: str) -> str | None:
 
 
 def _first_line(command: tuple[str, ...]) -> str:
-    """Return the first line of the version text that a compiler command prints."""
+    """Return the first line that ``command --version`` prints, for a compiler; or "unknown version" and the reason."""
     import subprocess
 
     try:
@@ -45,7 +45,7 @@ def _first_line(command: tuple[str, ...]) -> str:
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Use an empty cache inside a ``with`` block, so that the compiler really runs."""
+    """Run a ``with`` block with an empty cache of compiled libraries, so that the compiler really runs."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")
@@ -104,7 +104,7 @@ class PythonRecord(TypedDict):
 
 
 class DoctorReport(TypedDict):
-    """State of this installation; the version of a package that is missing is None."""
+    """The state of this installation: versions, extras, compiler, cache; the version of a missing package is None."""
 
     symrot: str
     python: PythonRecord
@@ -117,7 +117,10 @@ class DoctorReport(TypedDict):
 
 
 def facts() -> DoctorReport:
-    """Return the state of this installation as data for JSON; ``problems`` lists causes of failure or slowness."""
+    """Return the state of this installation as data for JSON: versions, extras, compiler, cache.
+
+    ``problems`` lists, one sentence each, causes of failure or slowness; it is empty if all is well.
+    """
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
@@ -169,7 +172,7 @@ ROWS: tuple[tuple[str, Callable[[DoctorReport], str]], ...] = (  # label -> text
 
 
 def lines(report: DoctorReport) -> list[str]:
-    """Return lines of text about the state of this installation, from the data of :func:`facts`."""
+    """Return the lines that `symrot doctor` prints; ``report`` is the data of :func:`facts`."""
     rows = [(name, text(report)) for name, text in ROWS]
     for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"

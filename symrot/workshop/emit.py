@@ -53,7 +53,10 @@ class Emitted(_Texts):
 
     @classmethod
     def of(cls, text: "KernelText", target: str, bounds: Mapping[str, Any] | None) -> "Emitted":
-        """Return an :class:`Emitted`: the texts of a kernel for one target."""
+        """Return an :class:`Emitted` with the texts of a kernel in the language ``target``, such as ``"c"``.
+
+        ``bounds`` are the bounds of rounding errors that were passed to :func:`emit`, or None.
+        """
         source, header = text.c(bounds) if target == "c" else (text.source(target), "")
         emitted = cls(text.name, source, header)
         emitted.text, emitted.bounds = text, bounds
@@ -67,12 +70,12 @@ class Emitted(_Texts):
 
     @property
     def function(self) -> str:
-        """The name of the C function for one sample in double precision."""
+        """The name of the C function for one sample in double precision: ``symrot_`` and the name of the kernel."""
         return f"symrot_{self.name}"
 
     @cached_property
     def certificate(self) -> str:
-        """The text of the kernel's certificate; raises CertificateError if a proof fails."""
+        """The text of the kernel's certificate, a JSON file of proofs; CertificateError is raised if a proof fails."""
         return self.text.certificate(self.bounds)
 
 

@@ -78,7 +78,10 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the index text of an input, such as ``angles[1]``, or the name of a constant in a scene's parameters."""
+    """Return the index text of the input that ``name`` means, such as ``angles[1]``, or the name of a scene's constant.
+
+    ``text`` is the whole range, NAME=LOW:HIGH, for the InputError that an unknown name raises.
+    """
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):
             return place

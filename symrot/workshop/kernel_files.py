@@ -42,13 +42,13 @@ SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernel
 
 
 def kernel_lines() -> list[str]:
-    """Return one line for each kernel of the library, with its name and its title."""
+    """Return the lines that `symrot emit --list` prints: the name and the title of each kernel of the library."""
     width = max(map(len, kernel_names()))
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 
 
 def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int | None) -> KernelText:
-    """Return the texts of the kernel, with or without derivatives, or of the step that the command line names.
+    """Return the texts of the kernel or time step that the options of `symrot emit` name.
 
     Parameters
     ----------
@@ -68,10 +68,10 @@ def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int 
 
 
 def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return the files of a library kernel or of a scene's kernel, as a map from file name to text.
+    """Return the files of a kernel in one language (``target``, such as ``"c"``), as a map from file name to text.
 
-    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file
-    (see :func:`symrot.emit`).
+    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
+    :func:`symrot.emit`).
     """
     return kernel.files(target, bounds)
 
@@ -79,10 +79,10 @@ def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, as a map from file name to text.
+    """Return the certificate file of a kernel, as a map from file name to text; empty for a step without a certificate.
 
-    Verdicts on object code are copied from the certificate on disk if they still hold. Bounds of rounding errors are
-    on the kernel's own box; for a scene, they are ``bounds``.
+    Verdicts on object code are copied from the certificate in ``directory`` if they still hold. Bounds of rounding
+    errors are on the kernel's own box; for a scene, they are ``bounds``.
     """
     if not kernel.has_certificate:
         return {}
@@ -112,7 +112,10 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate on disk, whose bounds and verdicts are used again; an empty dict if there is none."""
+    """Return the content of the certificate at ``path``, whose bounds and verdicts on object code are used again.
+
+    The result is an empty dict if there is no certificate.
+    """
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -121,7 +124,11 @@ def _slots(path: Path) -> dict[str, Any]:
 
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
-    """Return all files of one kernel, including its certificate, as a map from path to text."""
+    """Return all files of the kernel ``name`` in the languages ``targets``, as a map from path to text.
+
+    The certificate is among them. Paths are relative to ``directory``, in which an earlier certificate may be;
+    ``subfolder`` is empty or ``scenes/``.
+    """
     kernel, files = kernel_text(name), dict[str, str]()
     for target in targets:
         bounds = stored_bounds(kernel, directory / target / subfolder) if target == "c" else None
@@ -135,7 +142,8 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
     """Return all files of the library and of the shipped scenes' kernels, as a map from path to text.
 
-    Several processes share the work.
+    Several processes share the work. Paths are relative to ``directory``; ``progress`` is called with a line of text
+    for each kernel.
     """
     work = [
         (name, subfolder)
@@ -157,7 +165,10 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files on disk, even of kernels that symrot no longer has."""
+    """Return the paths of all kernel files in ``directory``, even of kernels that symrot no longer has.
+
+    Paths are relative to the directory; ``targets`` are the languages.
+    """
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -192,9 +203,10 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the library and the kernels of all shipped scenes, and return the paths of the changed files.
+    """Write the files of all library kernels and of the kernels of all shipped scenes; return the changed paths.
 
-    Files of kernels that no longer exist are deleted.
+    ``targets`` are the languages, such as ``"c"``, each with a subfolder of ``directory``. Files of kernels that no
+    longer exist are deleted.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
@@ -206,7 +218,9 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
-    """Return a unified diff between the kernels on disk and newly emitted ones; an empty list if they are equal.
+    """Return the lines of a unified diff between the kernels in a folder and newly emitted ones; empty if equal.
+
+    ``targets`` are the languages to compare, such as ``"c"``.
 
     Raises
     ------

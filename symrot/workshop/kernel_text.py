@@ -61,54 +61,57 @@ class KernelText(ABC):
 
     @abstractmethod
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header."""
+        """Return the pair (C source, header); ``bounds`` are rounding bounds for the comment at the head."""
 
     @property
     @abstractmethod
     def numpy(self) -> str:
-        """The NumPy source."""
+        """The kernel as a Python module that uses NumPy."""
 
     @property
     @abstractmethod
     def js(self) -> str:
-        """The JavaScript source, a module."""
+        """The kernel as a JavaScript module."""
 
     @property
     @abstractmethod
     def jax(self) -> str:
-        """The JAX source, a Python module."""
+        """The kernel as a Python module that uses JAX."""
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts, as the object from which its certificate is made."""
+        """Return the kernel with its formulas, laws and texts, the object from which its certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the section ``rounding`` of the certificate, which states bounds of rounding errors, or None."""
+        """Return the section ``rounding`` of the certificate, which states ``bounds``; None if there are no bounds."""
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if a proof fails."""
+        """Return the text of the kernel's certificate with the section ``bounds``;
+
+        CertificateError if a proof fails.
+        """
         text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text; the header comes first."""
+        """Return the C files as a map from name to text: the header, the source and the headers that they need."""
         source, header = self.c(bounds)
         shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in source else {}
         return {f"{self.name}.h": header, f"{self.name}.c": source} | shared
 
     def source(self, target: str, bounds: Bounds | None = None) -> str:
-        """Return the source in one of the languages "c", "numpy", "js" and "jax"."""
+        """Return the source in the language ``target``: ``"c"``, ``"numpy"``, ``"js"`` or ``"jax"``."""
         if target == "c":
             return self.c(bounds)[0]
         return {"numpy": lambda: self.numpy, "js": lambda: self.js, "jax": lambda: self.jax}[target]()
 
     def files(self, target: str, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the files in one of the languages as a mapping from name to text; in C the header comes first."""
+        """Return the files in the language ``target`` as a map from name to text; in C the header comes first."""
         return self.c_files(bounds) if target == "c" else {f"{self.name}{SUFFIX[target]}": self.source(target)}
 
     def _certified_files(self, bounds: Bounds | None) -> dict[str, str]:
-        """Return the files that a certificate lists, in its order: the C source comes first."""
+        """Return the files whose hashes a certificate states, as a map from name to text; the C source comes first."""
         files, source = self.c_files(bounds), f"{self.name}.c"
         others = {
             f"{folder}/{file}": text
@@ -119,7 +122,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of the library, which has its own box and its own bounds."""
+    """The texts of a kernel of the library, which has its own box of inputs and bounds of rounding errors on it."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
@@ -127,7 +130,7 @@ class LibraryText(KernelText):
         self.name, self._definition = name, definition(name)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header; the kernel's own bounds replace ``bounds``."""
+        """Return the pair (C source, header); its head states the kernel's own bounds, whatever ``bounds`` is."""
         return self._c
 
     @cached_property
@@ -203,7 +206,7 @@ class SceneText(KernelText):
 
     @cached_property
     def _formulas(self) -> tuple[Formulas, tuple[Argument, ...]]:
-        """The formulas of the rates and of their derivatives, and the output arrays for them."""
+        """The pair (formulas of the rates and of their derivatives, output arrays for them); rates are ``dy/dt``."""
         try:
             return rate_derivatives(self._equations, self.jacobian)
         except InputError as reason:
@@ -217,7 +220,7 @@ class SceneText(KernelText):
 
     @cached_property
     def program(self) -> Program:
-        """The program of the rates; the descriptions of its parameters are their formulas and values."""
+        """The operations that compute the rates ``dy/dt``; its parameters are described by formula and value."""
         return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
 
     @cached_property
@@ -257,7 +260,7 @@ class SceneText(KernelText):
 
     @cached_property
     def inputs(self) -> SceneInputs:
-        """The arguments of the kernel, values and formulas of its parameters, and the time span of the scene."""
+        """The inputs of the kernel, for bounds of its errors: arguments, values and formulas of parameters, times."""
         parameters, constants = self._lowered.parameters, self.plan.constants
         formulas = {f"p[{place}]": parameter for place, parameter in enumerate(parameters)}
         arguments, values = self._lowered.program.signature.arguments, tuple(bind(parameters, constants))
@@ -289,11 +292,15 @@ def _library_text(name: str) -> LibraryText:
 
 
 def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
-    """Return the texts of the kernel of a scene, of a shipped scene given by its name, or of a scene file."""
+    """Return the texts of a scene's kernel, the rates ``dy/dt`` of its motion.
+
+    ``scene`` is a scene, the name of a shipped one, or the path of a file; ``jacobian`` names the states and constants
+    by which the derivatives of the rates are computed too.
+    """
     return SceneText(load_scene(scene), jacobian)
 
 
 def scene_kernel_name(scene: str) -> str:
-    """Return the name of a scene's own kernel."""
+    """Return the name of a scene's own kernel: ``t_handle`` -> ``t_handle_rates``."""
     name = re.sub(r"\W", "_", f"{scene}_rates", flags=re.ASCII)
     return name if name[0].isalpha() else f"scene_{name}"

@@ -54,20 +54,31 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether all object code made with flags that must preserve the bits of results performs the C text."""
+    """Return whether the object code in a certificate's section is proven to perform the C text, bit by bit.
+
+    Only code counts whose compiler flags must preserve the bits of results; without any such code the result is False.
+    ``section`` is the section ``objects`` of a certificate, or None.
+    """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return the verdicts on the object code of a kernel as text, one line for each compiler and its flags."""
+    """Return the verdicts on the object code of a kernel, one line for each compiler and its flags.
+
+    ``section`` is the section ``objects`` of the kernel's certificate, or None for no lines.
+    """
     verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
     absent = (section or {}).get("missing", ())
     return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return lines with the number of accepted kernels by compiler and flags, and each rejected kernel."""
+    """Return lines of text: how many kernels are accepted for each compiler and flags, and each rejected kernel.
+
+    ``sections`` maps the name of a kernel to the section ``objects`` of its certificate. A kernel is accepted if its
+    object code performs the operations of its C text.
+    """
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
@@ -80,7 +91,9 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Compare each function in an object file with the C text; return one line for each function.
+    """Compare each function in the object file ``path`` with the C text ``text``; return one line for each.
+
+    ``where`` is the name of the C file, for messages.
 
     Raises
     ------
@@ -103,7 +116,11 @@ def _objects(section: Data | None) -> Iterator[Data]:
 
 
 def _verdict(item: Data) -> str:
-    """Return the verdict on one object file as text; for a rejected file, with the reason for its first function."""
+    """Return the verdict on one object file: that it performs the operations of the C text, or why it is rejected.
+
+    ``item`` is its entry in the section ``objects`` of a certificate; the reason is that for its first rejected
+    function.
+    """
     verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
         return f"performs the operations of the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"

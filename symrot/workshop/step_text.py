@@ -40,7 +40,10 @@ DIGITS = 40
 
 
 def _dop853(order: int) -> RungeKutta:
-    """Return the method of order 8 of Dormand and Prince's pair, without its estimates of the error."""
+    """Return the step of order 8 of Dormand and Prince, a Runge-Kutta method, without its estimates of the error.
+
+    ``order`` is not used: the method has one order only.
+    """
     stages = range(1, 13)
     return RungeKutta(
         "dop853", 8, tuple(Fraction(NODES[i]) for i in stages),
@@ -85,7 +88,11 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
 
 
 def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the texts of a step of a scene, and of its derivatives; raise InputError for a library kernel."""
+    """Return the texts of one time step of a scene; InputError is raised for a library kernel, which has no motion.
+
+    ``step`` is the method, such as ``"rk4"``, and ``order`` that of a Taylor series; ``jacobian`` names the inputs by
+    which the step is differentiated too.
+    """
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
     if step == "exact":
@@ -194,12 +201,12 @@ class StepText(KernelText):
         return jax_source(self._program, self._description("jax"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Raise CertificateError: a step has a certificate of its own kind."""
+        """Raise CertificateError: a step has a certificate of its own kind, see :attr:`certified`."""
         raise CertificateError(f"{self.name}: expected a kernel, got a step, whose certificate states its formula only")
 
     @cached_property
     def certified(self) -> StepUnderTest:
-        """The step with its texts, as the object from which its certificate is made."""
+        """The step with its method and texts, the object from which its certificate is made."""
         description = self._description("c")
         return StepUnderTest(
             self.name, description.title, description.command, self._rates_program, self.method,
@@ -240,7 +247,7 @@ class StepText(KernelText):
 
     @cached_property
     def _test(self) -> str:
-        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+        """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
         count, outputs, parameters = len(self._vectors[0][0]), len(self._vectors[0][2]), self.rates.inputs.parameters
         columns = "STATES" if outputs == count else "OUTPUTS"
         included = [f'#include "{parameters_file(self.name)}"'] if parameters else []
@@ -280,7 +287,10 @@ class StepText(KernelText):
 
 
 def _table(declared: str, values: Any) -> str:
-    """Return the C definition of a constant table of doubles."""
+    """Return the C definition of a constant table of doubles, such as ``static const double x[2] = {1.0, 2.0};``.
+
+    ``declared`` is the name with its sizes, ``x[2]``; ``values`` are nested lists of numbers.
+    """
 
     def text(value: Any) -> str:
         return f"{{{', '.join(map(text, value))}}}" if isinstance(value, list) else repr(value)

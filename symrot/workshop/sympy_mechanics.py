@@ -69,14 +69,20 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
 
 
 def _table(body: RigidBody) -> dict[str, Any]:
-    """Return the table ``body`` of a scene from a rigid body whose mass and inertia are numbers."""
+    """Return the table ``body`` of a scene (name, mass, inertia) from a SymPy rigid body with numbers.
+
+    InputError is raised for symbols.
+    """
     tensor = body.central_inertia.to_matrix(body.frame)
     rows = [[_number(tensor[i, j], f"inertia[{i}][{j}]") for j in range(3)] for i in range(3)]
     return {"name": str(body.name), "mass": _number(body.mass, "mass"), "inertia": rows}
 
 
 def _number(value: Any, place: str) -> Any:
-    """Return a number of SymPy as a scene takes it: a fraction, the exact value of a float, or text such as sqrt(2)."""
+    """Return a number of SymPy as a scene accepts it: a fraction, the exact value of a float, or text such as sqrt(2).
+
+    ``place`` names it in the InputError that is raised for symbols.
+    """
     value = Rational(value) if isinstance(value, int | Fraction) else value
     if isinstance(value, float):
         return value

@@ -14,7 +14,7 @@ COUNT = min(os.cpu_count() or 1, 4)
 
 
 def _ignored(arguments: object) -> None:
-    """Ignore an error in a thread of a process pool that is shutting down."""
+    """Ignore an error in a thread of a process pool that is being shut down; replaces ``threading.excepthook``."""
 
 
 @contextmanager

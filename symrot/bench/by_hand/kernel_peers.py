@@ -110,12 +110,15 @@ def textbook(name: str) -> list[sympy.Expr]:
 
 
 def input_names(name: str) -> list[str]:
-    """Return the names of the components of a kernel's inputs, in order."""
+    """Return the names of the numbers that the kernel ``name`` takes, in order: ``q0`` to ``q3`` for a quaternion."""
     return [name for a in kernel_program(name).signature.arguments if a.role == "in" for name, *_ in a.components]
 
 
 def textbook_program(name: str) -> Program:
-    """Return the textbook formulas of a kernel as a program in which common subexpressions are not shared."""
+    """Return the textbook formulas of the kernel ``name`` as a program (named formulas that can be printed as C).
+
+    Common subexpressions are not shared, since each tool shares them in its own way.
+    """
     signature = kernel_program(name).signature
     return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
 
@@ -137,7 +140,7 @@ def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any
 
 
 def products(node: Node) -> Node:
-    """Return a formula with integer powers written as products, since C has no power operator."""
+    """Return the formula ``node`` with integer powers written as products (x*x), since C has no power operator."""
     if not children(node):
         return node
     if node[0] == "**":
@@ -170,7 +173,7 @@ _REAL = {name: sympy.Symbol(name, real=True) for name in ("W", "S", "C", "I", "E
 
 
 def by_hand(name: str) -> str | None:
-    """Return the handwritten C of a kernel, or None if there is no such file."""
+    """Return the C text of the kernel ``name`` that was written by hand, or None if nobody has written one."""
     text = BY_HAND.read_text(encoding="utf-8")
     return text if f" {c_name(name)}(" in text else None
 

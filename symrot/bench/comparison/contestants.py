@@ -220,7 +220,7 @@ def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
 
 
 def tolerances_from(text: str) -> tuple[float, ...]:
-    """Return the tolerances in a comma-separated list of numbers.
+    """Return the tolerances in a comma-separated list of numbers such as ``1e-6,1e-9``.
 
     Raises
     ------

@@ -53,7 +53,7 @@ def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
 
 
 def exact_start(plan: Plan) -> list[Fraction]:
-    """Return the exact initial values of the integrated states, from the scene."""
+    """Return the exact initial values of the integrated states: omega, and the quaternion or angle if needed."""
     start = plan.scene.initial
     values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
     values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
@@ -122,7 +122,7 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
-        """Return the states at a time that is not before the start; mpmath must be set to 40 digits.
+        """Return the integrated states at the time ``t``, not before the start; mpmath must be set to 40 digits.
 
         ``on_step`` is called after each step with the time reached; an exception that it raises ends the computation.
         """
@@ -138,7 +138,7 @@ class ExactPath:
         return self._sum(self.pieces[low][2], t - self.pieces[low][0])
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at ``times``, none of them before the start, rounded to double, shape (n, N)."""
+        """Return the integrated states at ``times``, none before the start, as doubles, one row for each time."""
         with mpmath.workdps(DIGITS):
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 

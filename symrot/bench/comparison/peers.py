@@ -38,7 +38,8 @@ def heyoka_integrator(
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
     """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
 
-    ``began`` is the start time, s. If heyoka is not installed, return None.
+    ``rates`` is the program for dy/dt with the values ``parameters``, ``start`` the initial state and ``began`` its
+    time, s; ``settings`` are options of heyoka such as ``fast_math``. If heyoka is not installed, return None.
     """
     try:
         import heyoka
@@ -56,7 +57,7 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the emitted NumPy kernel as a function ``f(t, y, p)`` for SciPy, rewritten for a single state (a list).
+    """Return the NumPy function that symrot emits for dy/dt as ``f(t, y, p)`` for SciPy, for one state (a list).
 
     Python floats and :mod:`math` replace zero-dimensional arrays. This halves the time; an expert would do it too.
     """

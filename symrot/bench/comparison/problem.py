@@ -50,17 +50,17 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The kernel of the scene, which computes rates and quantities."""
+        """The compiled functions of the scene: the rates dy/dt of the integrated states, and the printed quantities."""
         return scene_kernel(self.plan)
 
     @cached_property
     def p(self) -> list[float]:
-        """The values of the rate parameters, each rounded to double once."""
+        """The parameters of the rates dy/dt, such as (C - B)/A, each rounded to double once."""
         return bind(self.kernel.rate_parameters, self.plan.constants)
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        """The values of the parameters of the rates dy/dt, by name."""
+        """The parameters of the rates dy/dt, such as (C - B)/A, by name."""
         return dict(zip((name for name, _ in self.kernel.rate_parameters), self.p, strict=True))
 
     @property
@@ -74,7 +74,10 @@ class Problem:
         return make_motion(self.plan, Choice("scipy", ""), 1e-12)
 
     def state(self, y: Sequence[Any] | Floats, t: float) -> State:
-        """Return the state of the body at time t from the integrated states ``y``."""
+        """Return the state of the body (omega and quaternion) at time ``t`` from the integrated states ``y``.
+
+        If a number in ``y`` is not finite, omega is nan.
+        """
         values = np.array([[float(value) for value in y]])
         if not np.isfinite(values).all():
             return State(np.full(3, np.nan), None)
@@ -83,10 +86,11 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors: the relative error of the angular velocity, or the attitude error in rad.
+        """Return the larger of two errors of a state: the relative error of omega, or the attitude error in rad.
 
-        For a body slower than ``least``, rad/s, the first error is relative to ``least``: a body that is nearly at rest
-        before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.
+        ``state`` is computed by a method, ``exact`` is the reference. For a body slower than ``least``, rad/s, the
+        first error is relative to ``least``: a body that is nearly at rest before a pulse may rotate at 1e-40 rad/s,
+        where relative errors are meaningless.
         """
         if not np.isfinite(state.omega).all():
             return math.inf

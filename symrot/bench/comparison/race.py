@@ -20,7 +20,7 @@ SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes at least SLOW seconds is timed in
 
 @dataclass
 class Measured:
-    """One contestant at one tolerance: steps, error, and processor seconds in each round."""
+    """One method or program at one tolerance: steps, error, and processor seconds in each round."""
 
     name: str
     tolerance: float

@@ -107,7 +107,9 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Compute reference states of a scene's motion and compare them with other references.
+    """Compute reference states of a scene's motion, against which methods are measured, and compare several references.
+
+    ``say`` is called with progress messages. A reference that would take more than ``seconds`` is left out.
 
     Raises
     ------
@@ -191,13 +193,13 @@ def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return the scale by which the error of each state is divided: the initial |omega|, or 1 for the attitude."""
+    """Return for each integrated state the scale of its error: the initial |omega|, or 1 for the attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
 
 def _state(problem: Problem, last: list[Any], end: float) -> State:
-    """Return the state of the body at time ``end`` from the integrated states ``last``, evaluated in mpmath."""
+    """Return omega and quaternion of the body at time ``end`` from the integrated states ``last``, in mpmath."""
     import mpmath
 
     kernel, plan = problem.kernel, problem.plan
@@ -215,7 +217,7 @@ def _state(problem: Problem, last: list[Any], end: float) -> State:
 
 
 def longer(source: str) -> str:
-    """Return C code in which long double replaces double, in types, literals and library functions."""
+    """Return the C code ``source`` with long double in place of double, in types, literals and library functions."""
     text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
     return re.sub(r"\bdouble\b", "long double", text)
 
@@ -327,7 +329,7 @@ def _fixed_steps(
 
 
 def _long_state(general: Problem, y: Any, end: float) -> State:
-    """Return the state of the body at time ``end`` from the integrated states ``y``, evaluated in long double."""
+    """Return omega and quaternion of the body at time ``end`` from the integrated states ``y``, in long double."""
     exact = exact_parameters(general.kernel.quantity_parameters, general.plan)
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}
@@ -341,7 +343,7 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
 
 
 def _long_number(value: Fraction) -> Any:
-    """Return a number as long double, correct to the last bit: the nearest double plus what its rounding left out."""
+    """Return a fraction as long double, correct to the last bit: the nearest double plus what its rounding left out."""
     first = float(value)
     return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
 

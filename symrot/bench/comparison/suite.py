@@ -36,7 +36,7 @@ Progress = Callable[[str], object]
 
 
 def motions() -> dict[str, tuple[str, Scene]]:
-    """Return a map from the name of each motion in the suite to (kind of motion, scene)."""
+    """Return a map from the name of each motion in the suite to (kind of motion in words, scene)."""
     scenes = {}
     for name, entry in read_toml(SUITE, SUITE.name).items():
         entry_scene = entry["scene"]
@@ -124,7 +124,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results as JSON text with one line for each motion.
+    """Return the results of the suite as JSON text with one line for each motion, for comparison line by line.
 
     Numbers are rounded to four significant digits.
     """
@@ -210,7 +210,7 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite as lines of text; the first is the title."""
+    """Return the table of the suite's ``results``, from :func:`run`, as lines of text; the first is the title."""
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return [
@@ -223,7 +223,7 @@ def lines(results: Mapping[str, Any]) -> list[str]:
 
 
 def page(results: Mapping[str, Any]) -> str:
-    """Return the table of the suite as a Markdown page."""
+    """Return the table of the suite's ``results``, from :func:`run`, as a Markdown page that names the machine."""
     head, *rows = _rows(results)
     one = next(iter(results["studies"].values()))
     machine = one["machine"]

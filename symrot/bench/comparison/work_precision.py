@@ -41,7 +41,7 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """The settings that determine how long a work-precision study takes."""
+    """The settings that determine how long a work-precision study takes, such as its tolerances and repetitions."""
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
@@ -118,7 +118,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash that identifies a motion; it depends on body, initial state, torques and span, not on the title."""
+    """Return a hash by which stored results are assigned to a motion: body, initial state, torques and span."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]

@@ -67,7 +67,7 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return the reason why a motion has no Taylor series, or an empty text if it has one."""
+        """Return why a motion has no Taylor series, such as a torque that jumps; an empty text if it has one."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:

@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The result of moving a body's points with one step size: growth, growth expected by the law, strain, error."""
+    """How a body changes if its points are moved in steps: growth, growth by the proven law, strain, error."""
 
     scheme: str
     h: float  # s
@@ -34,7 +34,7 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws of one tangent or secant step, each as a pair (law, whether it was proven)."""
+    """Return the laws by which one tangent or secant step changes lengths, as pairs (law, whether it was proven)."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -63,7 +63,7 @@ def _corners(size: tuple[float, float, float]) -> Floats:
 
 
 def _turned(axis: Floats, angle: float, points: Floats) -> Floats:
-    """Return points rotated about a unit axis."""
+    """Return points rotated about a unit axis by ``angle``, rad."""
     rotated: Floats = (
         points * math.cos(angle) + np.cross(axis, points) * math.sin(angle)
         + np.outer(points @ axis, axis) * (1.0 - math.cos(angle))

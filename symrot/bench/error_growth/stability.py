@@ -171,7 +171,7 @@ def passes() -> list[dict[str, Any]]:
 
 
 def scene_distance(text: str | int) -> float:
-    """Convert an entry of ``PASSES``, a distance to gimbal lock in rad, to a float."""
+    """Convert an entry of ``PASSES``, a distance to gimbal lock in rad such as ``"1/100"``, to a float."""
     top, _, bottom = str(text).partition("/")
     return float(top) / float(bottom or 1)
 
@@ -267,7 +267,7 @@ def _point_lines(results: Any) -> list[str]:
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
     """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None.
 
-    If ``plot`` is a path, the report is also drawn into that file.
+    ``long`` and ``say`` are those of :func:`stability`. If ``plot`` is a path, the report is also drawn into that file.
 
     Raises
     ------

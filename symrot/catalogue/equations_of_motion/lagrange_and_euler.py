@@ -14,7 +14,7 @@ TORQUE, MOMENTUM = Matrix(symbols.torque_b), Matrix(symbols.rotor)
 
 
 def lagrange(energy: Expr) -> Matrix:
-    """Return ``d/dt (dT/d(rate)) - dT/d(angle)`` for the three Euler angles, shape (3, 1)."""
+    """Return ``d/dt (dT/d(rate)) - dT/d(angle)`` of the energy T for the three Euler angles, shape (3, 1)."""
     return Matrix([rate(energy.diff(dq), MOTION) - energy.diff(q) for q, dq in zip(ANGLES, RATES, strict=True)])
 
 

@@ -80,9 +80,10 @@ def _plane(d: Derivation) -> None:
 def _holds(
     d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
 ) -> None:
-    """Add the step to the derivation ``d`` that a motion satisfies the equations of a pendulum.
+    """Add to the derivation ``d`` the step with the text ``claim``: a motion satisfies the equations of a pendulum.
 
-    The motion is given by the sine and cosine of half the angle, and by the angular rate.
+    ``motion`` gives the sine and cosine of half the angle, and the angular rate, in symbols whose time derivatives are
+    ``along``; ``hypotheses`` are expressions in these symbols that are zero.
     """
     s, c, speed = motion
     half = Rational(1, 2)

@@ -83,7 +83,7 @@ def _shape(d: Derivation, body: Solid) -> None:
 
 
 def _limits(body: Solid) -> str:
-    """Return a sentence that gives the limits of the integration coordinates of a solid."""
+    """Return the limits of the integration coordinates of a solid in words, such as ``$r$ from $0$ to $R$``."""
     return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
 
 

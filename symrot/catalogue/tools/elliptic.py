@@ -27,16 +27,19 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return the two quadratic relations of sn, cn and dn, as expressions that are zero.
+    """Return s^2 + c^2 - 1 and d^2 + mu s^2 - 1 for s = sn, c = cn, d = dn; proofs use that both are zero.
 
-    With ``fixed``, the relations are between the values at the fixed argument w.
+    mu is ``parameter``. With ``fixed``, the functions have the fixed argument w.
     """
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 
 
 def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
-    """Return sn, cn and dn of u + w or u - w by the addition theorems, from their values at u and at w."""
+    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems.
+
+    ``at`` are the values at w; those at u are the symbols SN, CN and DN.
+    """
     s, c, d = at
     s = sign * s
     below = 1 - parameter * SN**2 * s**2

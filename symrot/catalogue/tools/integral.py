@@ -64,7 +64,10 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Return the integrations of an iterated integral; ``limits`` are (variable, lower, upper), innermost first."""
+    """Return the integrations, one by one, of an iterated integral of ``integrand``.
+
+    ``limits`` are (variable, lower, upper), innermost first.
+    """
     stages = []
     for variable, lower, upper in limits:
         primitive = antiderivative(expand(integrand), variable)

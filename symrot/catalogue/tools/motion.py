@@ -27,12 +27,12 @@ def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
 
 
 def attitude_rates() -> dict[Symbol, Expr]:
-    """Return a map from the quaternion components q0 to q3 to their rates, for the angular velocity ``OMEGA``."""
+    """Return a map from the quaternion components q0 to q3 to their rates, for the body rates ``OMEGA``."""
     return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
 
 
 def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
-    """Return d/dt of an expression or matrix by the chain rule; ``rates`` gives the rate of each variable."""
+    """Return d/dt of an expression or matrix ``quantity`` by the chain rule, with the rate of each variable."""
     terms = (quantity.diff(variable) * speed for variable, speed in rates.items())
     first = next(terms)
     return sum(terms, first)

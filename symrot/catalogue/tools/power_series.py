@@ -8,7 +8,7 @@ __all__ = ["coefficient", "indexed"]
 
 
 def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
-    """Return the symbol of a coefficient of a power series, such as ``a_{n-1}``."""
+    """Return the symbol of a coefficient of a power series; ``indexed("a", n, -1)`` is ``a_{n-1}``."""
     return Symbol(f"{name}_{{{index.name}{f'{shift:+d}' if shift else ''}}}")
 
 

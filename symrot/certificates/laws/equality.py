@@ -84,7 +84,10 @@ class _AtomField(FractionField):
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials; function values such as ``sin(x)`` become atoms."""
+    """A converter of SymPy formulas to fractions of polynomials; a function value such as ``sin(x)`` becomes an atom.
+
+    An atom is a symbol that stands for that value.
+    """
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -232,7 +235,11 @@ class _EqualityProver:
     def _is_limit_or_formula(
         self, function: FunctionWithLimit, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient
     ) -> bool:
-        """Return whether the branches of a conditional are a function's limit at zero and its formula elsewhere."""
+        """Return whether a conditional computes ``function``: its limit at zero in one branch, else its formula.
+
+        Its ``arguments`` are fractions of polynomials, and so are ``then`` and ``other``, the values of the two
+        branches.
+        """
         reader = _Formulas(self.fractions)
         reader.values.update(zip(function.arguments, arguments, strict=True))
         return then == reader.read(function.limit) and other == reader.read(function.formula)

@@ -87,7 +87,7 @@ def quotient_text(value: Quotient) -> str:
 
 
 class FormulaReader(ABC):
-    """A converter of SymPy formulas to fractions; subclasses define how symbols, roots and functions are converted.
+    """A converter of SymPy formulas to fractions of polynomials; subclasses have rules for symbols and functions.
 
     ``values`` stores the fractions of the formulas that were converted before.
     """

@@ -72,18 +72,21 @@ class CaseProof:
 
 
 class UndecidedChoice(Exception):
-    """Raised for a conditional whose branch is not chosen yet; the arguments are the two values that it compares."""
+    """Raised for a conditional in a formula whose branch the current case does not choose.
+
+    Its arguments are the two values that the conditional compares, as text; the case is then split in two.
+    """
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, x, whose sine is a variable.
 
     The arguments are the monomial (here x) and the coefficient (here 1/2) of a smaller base angle that would do.
     """
 
 
 class OutOfGenerators(Exception):
-    """Raised if a proof needs more generators than the polynomial ring has."""
+    """Raised if a proof needs more generators, variables for function values, than the polynomial ring has."""
 
 
 @dataclass
@@ -223,7 +226,10 @@ class LawProver(FormulaReader):
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
-        """Return the square root of a polynomial: a polynomial if it is a perfect square, else a generator."""
+        """Return the square root of the polynomial ``inside``: a polynomial if it is a square, else a generator.
+
+        The square of that generator, a variable for the root, is ``inside``.
+        """
         if inside not in self.radicals:
             root = self.perfect(inside)
             if root is None:
@@ -270,7 +276,7 @@ class LawProver(FormulaReader):
         return self.signs[value]
 
     def arc(self, y: Quotient, x: Quotient) -> PolyElement:
-        """Return the generator for ``atan2(y, x)``, and record the cosine and sine of this angle."""
+        """Return the generator, a variable of the polynomials, for ``atan2(y, x)``; record its cosine and sine."""
         if (y, x) not in self.arcs:
             radius = self.root(self.fractions.add(self.fractions.power(x, 2), self.fractions.power(y, 2)))
             generator = self.arcs[y, x] = self.generator(f"atan2({quotient_text(y)}, {quotient_text(x)})")
@@ -284,7 +290,10 @@ class LawProver(FormulaReader):
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle modulo 2 pi; for an angle wrapped to [-pi, pi], return the angle before wrapping."""
+        """Return an angle as a fraction of polynomials, up to multiples of 2 pi.
+
+        For an angle that the formula wraps to [-pi, pi], that is the angle before wrapping.
+        """
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
         if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):

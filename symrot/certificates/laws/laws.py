@@ -147,7 +147,10 @@ def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequen
 
 
 def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
-    """Return the free variables of a law, in a fixed order: pi, and the symbols without a formula."""
+    """Return the names of the free variables of a law, in a fixed order: pi, and the symbols that have no formula.
+
+    ``formulas`` maps the name of a symbol to its formula.
+    """
     inputs: set[str] = set()
     waiting, seen = [*law.vanishing, *law.relations], set()
     while waiting:

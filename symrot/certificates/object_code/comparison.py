@@ -273,7 +273,7 @@ def _split_product(terms: Terms, roots: list[int]) -> str:
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
-    """Return whether a product needs no rounding because one factor is 2."""
+    """Return whether a product (a term) needs no rounding, because one factor is the constant 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip

@@ -120,7 +120,7 @@ def write(state: MachineState, instruction: Instruction, operand: object, words:
 
 
 def _size(instruction: Instruction) -> int:
-    """Return the operand size of an instruction in bytes, from its first operand that has a size."""
+    """Return the number of bytes on which an instruction acts: the size of its first operand that has one."""
     for operand in instruction.operands:
         if isinstance(operand, Register) and operand.name in GENERAL:
             return GENERAL[operand.name][1]
@@ -321,7 +321,11 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Return whether the condition of a jump, such as ``ne`` (not equal), holds for the processor's current flags."""
+    """Return whether a conditional jump is taken with the processor's current flags.
+
+    ``condition`` is the end of its name, such as ``ne`` (not equal). UndecidedBranch is raised if comparing two unknown
+    numbers decides.
+    """
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])

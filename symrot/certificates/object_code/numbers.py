@@ -149,7 +149,10 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: the sign bit of the third source chooses the first or the second."""
+    """Return the function that executes a blend: for each number, the sign bit of the third source selects.
+
+    It selects the second source if it is set, otherwise the first. ``suffix`` says packed or scalar, and the type.
+    """
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         value = terms.constant(mask)

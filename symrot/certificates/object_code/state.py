@@ -65,7 +65,11 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that do not change while the function runs: its arrays, constants and number type."""
+    """The facts about a call that do not change while the function runs.
+
+    ``width`` is the number of bits of its numbers, 64 or 32; ``arrays`` are its array arguments by name; ``listing`` is
+    the content of the object file.
+    """
 
     terms: Terms
     listing: Listing
@@ -121,18 +125,18 @@ class MachineState:
         raise UndecidedBranch((pair[0], pair[1]), possible & accepted, possible - accepted)
 
     def integer(self, words: Words) -> int | None:
-        """Return the integer that 32-bit words hold, or None if the words are not constant."""
+        """Return the integer that 32-bit words hold, the lowest first; None if a word is not constant."""
         values = [self.context.terms.constant(word) for word in words]
         if any(value is None for value in values):
             return None
         return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
 
     def whole(self, words: Words) -> int:
-        """Join one or two 32-bit words into one term, and return it."""
+        """Return one or two 32-bit words, the low one first, joined into one term, a symbolic value."""
         return words[0] if len(words) == 1 else self.context.terms.join(*words)
 
     def halves(self, term: int) -> Words:
-        """Split a term into its 32-bit words, and return them."""
+        """Return the 32-bit words of a term, a symbolic value of 32 or 64 bits; the low word comes first."""
         terms = self.context.terms
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
@@ -172,7 +176,10 @@ class MachineState:
     # --- memory -------------------------------------------------------------------------------------------------------
 
     def address(self, operand: Memory) -> tuple[str, int]:
-        """Return the base and offset of a memory operand whose address is known without the linker."""
+        """Return the address of a memory operand: a base, such as an array or the stack, and an offset in bytes.
+
+        NotUnderstood is raised if the address is not known.
+        """
         if operand.segment:
             raise NotUnderstood(
                 f"expected an address without a segment, got an address in the segment {operand.segment}"

@@ -87,11 +87,11 @@ class Terms:
         return self.places[term]
 
     def width(self, a: int) -> int:
-        """Return the number of bits of a symbolic term, 32 or 64."""
+        """Return the number of bits of the value for which the term ``a`` stands, 32 or 64."""
         return int(self.nodes[a][1])
 
     def kind(self, a: int) -> str:
-        """Return the kind of a term, such as ``"add"`` or ``"call"``."""
+        """Return the kind of the term ``a``: the operation that gives its value, such as ``"add"`` or ``"call"``."""
         return str(self.nodes[a][0])
 
     # --- leaves ---------------------------------------------------------------------------------------------------
@@ -105,18 +105,21 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term of a number; raise ValueError if ``width`` bits cannot represent it exactly."""
+        """Return the constant term for the number ``value``, in ``width`` bits;
+
+        ValueError if these cannot hold it exactly.
+        """
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
         return self.bits(width, bits)
 
     def unknown(self, byte: int | None = None) -> int:
-        """Return a new 32-bit term with unknown bits, except the lowest byte if its value ``byte`` is passed."""
+        """Return a new 32-bit term about whose value nothing is known, except its lowest byte if ``byte`` is passed."""
         return self._add("unknown", 32, len(self.nodes), byte)
 
     def lowest_byte(self, a: int) -> int | None:
-        """Return the lowest byte of a 32-bit term, or None if the byte is not known."""
+        """Return the lowest byte of the 32-bit value of the term ``a``, or None if the byte is not known."""
         value = self.nodes[a][3] if self.kind(a) == "unknown" else self.constant(a)
         return None if value is None else int(value) & 0xFF
 
@@ -129,7 +132,7 @@ class Terms:
         return self._add("address", 64, base, offset)
 
     def constant(self, a: int) -> int | None:
-        """Return the bits of a symbolic term if it is constant; None for any other term."""
+        """Return the value of the term ``a``, as the integer that its bits encode, if it is constant; else None."""
         return self.nodes[a][2] if self.nodes[a][0] == "bits" else None
 
     def _value(self, a: int) -> float | None:
@@ -139,7 +142,7 @@ class Terms:
     # --- words: a 64-bit term consists of two 32-bit terms --------------------------------------------------------
 
     def word(self, a: int, part: int) -> int:
-        """Return the low (``part`` is 0) or high (1) 32 bits of a 64-bit term."""
+        """Return the term for half of the 64-bit term ``a``: the low 32 bits if ``part`` is 0, the high ones if 1."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(32, node[2] >> 32 * part)
@@ -263,7 +266,10 @@ class Terms:
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return a factor without its minus sign, and whether it had a minus sign."""
+        """Return the term ``a`` without its minus sign, and whether it had one:
+
+        (b, True) if ``a`` is -b, else (a, False).
+        """
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)
@@ -340,7 +346,7 @@ class Terms:
         return self._add("fnma" if first != second else "fma", self.width(a), *sorted((a, b)), c)
 
     def call(self, name: str, width: int, arguments: Iterable[int]) -> int:
-        """Return the term for a call of a C library function, such as ``sin(x)``."""
+        """Return the term for the value of a C function, such as ``sin(x)``, whose result has ``width`` bits."""
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
@@ -363,7 +369,10 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the mask of a comparison: all bits 1 if comparing ``a`` with ``b`` has one of ``outcomes``, else 0."""
+        """Return the term whose bits are all 1 if comparing ``a`` with ``b`` has one of ``outcomes``, otherwise all 0.
+
+        It has ``width`` bits; machine code selects values with such masks.
+        """
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -383,7 +392,7 @@ class Terms:
     # --- the whole graph ----------------------------------------------------------------------------------------------
 
     def operands(self, a: int) -> tuple[int, ...]:
-        """Return the indices of the terms that are operands of a term."""
+        """Return the terms from which the value of the term ``a`` is computed; empty for inputs and constants."""
         node = self.nodes[a]
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 

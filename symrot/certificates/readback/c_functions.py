@@ -53,7 +53,10 @@ class CFunction:
 
 
 def _tokens(text: str, where: str) -> list[Token]:
-    """Return the tokens of a C file without comments and directives."""
+    """Return the tokens (names, numbers, marks) of a C file without comments and directives.
+
+    ``where`` is the file's name, for messages.
+    """
     if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
         raise CertificateError(
             f"{where}: expected C without backslashes and trigraphs, as symrot emits it, got a text with one of these"
@@ -165,7 +168,7 @@ def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
 
 
 def _function(cursor: Cursor) -> CFunction | None:
-    """Read the next function of a C text; return its definition, or None for a prototype."""
+    """Read the next function of a C file; return its signature and body, or None for a prototype, which has no body."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
@@ -188,7 +191,7 @@ def _function(cursor: Cursor) -> CFunction | None:
 
 
 def _parameter(cursor: Cursor) -> Parameter:
-    """Read the next parameter of a C function and return it."""
+    """Read the next parameter of a C function, such as ``const double q[4]``, and return it."""
     is_const = cursor.peek() == "const"
     if is_const:
         cursor.next()

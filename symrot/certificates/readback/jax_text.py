@@ -163,7 +163,10 @@ def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -
 
 
 def _assignment(line: str, where: str) -> str:
-    """Return the C text of an assignment to a new variable."""
+    """Return a line of JAX, an assignment to a new variable, as C: ``a = x*y`` -> ``const double a = x*y;``.
+
+    ``where`` is the file's name, for messages.
+    """
     match = _ASSIGNMENT.fullmatch(line)
     if match is None or match[1] in _ONLY_IN_C | _NOT_IN_C:
         raise CertificateError(f"{where}: expected an assignment as symrot emits it, got {line[:40]!r}")
@@ -171,7 +174,7 @@ def _assignment(line: str, where: str) -> str:
 
 
 def _split(text: str) -> list[str]:
-    """Split a text at the commas outside brackets, and return the parts."""
+    """Split a text at the commas outside brackets, and return the parts; an empty list if brackets do not match."""
     depth, parts = 0, [""]
     for letter in text:
         depth += (letter in "([") - (letter in ")]")

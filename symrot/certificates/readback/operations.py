@@ -36,7 +36,7 @@ RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def operands(node: Node) -> tuple[int, ...]:
-    """Return the indices of a node's operands."""
+    """Return the indices of the earlier nodes from which a node is computed; empty for an input or a constant."""
     kind = node[0]
     if kind in ("in", "const"):
         return ()
@@ -66,8 +66,7 @@ class Operations:
         functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> dict[str, Any]:
-        """Evaluate the operations in any arithmetic, such as that of intervals; return a map from each output to its
-        value.
+        """Evaluate the operations in any arithmetic, such as intervals; return a map from each output to its value.
 
         Parameters
         ----------
@@ -101,7 +100,7 @@ class Operations:
         )  # fmt: skip
 
     def counts(self) -> dict[str, int]:
-        """Return the number of operations of each kind; a call is counted under the name of its function."""
+        """Return the number of operations of each kind, such as ``{"add": 2, "sin": 1}``."""
         names = [node[1] if node[0] == "call" else node[0] for node in self.nodes if node[0] not in ("in", "const")]
         return {name: names.count(name) for name in sorted(set(names))}
 

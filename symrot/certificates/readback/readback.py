@@ -33,7 +33,10 @@ DEEPEST = 200  # limit on the nesting of an expression
 
 @dataclass
 class _Scope:
-    """The names known inside one C function: values and arrays by name, and the output elements assigned so far."""
+    """The names known inside one C function: numbers, arrays, and the output elements that have been assigned.
+
+    ``loop`` is the variable of the loop over samples, and ``count`` the number of samples, in a function for many.
+    """
 
     values: dict[str, int] = field(default_factory=dict)
     arrays: dict[str, Parameter] = field(default_factory=dict)
@@ -44,7 +47,11 @@ class _Scope:
 
 
 class _BodyReader:
-    """A reader of the body of a C function, which turns statements into a graph of rounded operations."""
+    """A reader of the body of a C function, which turns statements into a graph of rounded operations.
+
+    Its methods take ``cursor``, the place of the next token, and ``scope``, the known names, and return nodes: indices
+    of operations in the graph.
+    """
 
     def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
@@ -56,11 +63,14 @@ class _BodyReader:
         self.vectorised_angles: set[int] | None = None
 
     def input(self, place: str) -> int:
-        """Return the node of the graph for an input component, such as ``"q[1]"``."""
+        """Return the node (its index in the graph of operations) for an input component, such as ``"q[1]"``."""
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
-        """Read statements to the end of a body; return the node that ``return`` returns, or None without ``return``."""
+        """Read statements to the end of a body; return the node of the value after ``return``, or None without it.
+
+        ``cursor`` is at the first token; the statements add to ``scope`` the names that they define.
+        """
         while cursor.peek():
             if cursor.peek() == "(":
                 cursor.expect("(", "void", ")")
@@ -105,7 +115,10 @@ class _BodyReader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read an array index, ``[i]`` for one sample or ``[i*n + k]`` for sample k of n; return the component i."""
+        """Return the component i that an array index names, and move past it.
+
+        The index is ``[i]`` in a function for one sample; for many it is ``[i*n + k]``, where k is the sample of n.
+        """
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -195,7 +208,7 @@ class _BodyReader:
         return self.builder.add("const", Fraction(value))
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
-        """Return the node for an element of an input array."""
+        """Return the node for the next element of the input array ``name``, such as ``q[1]``, and pass its index."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail("an input array", repr(name))
@@ -231,7 +244,10 @@ class _BodyReader:
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
-        """Return the node for a call of a function of the same file; its body is read with these arguments."""
+        """Return the node for a call of a function of the same file with the nodes ``arguments``.
+
+        The body of the function is read as if it stood in place of the call.
+        """
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
             raise cursor.fail(f"a function of type {self.real}", repr(function.name))
@@ -249,7 +265,10 @@ class _BodyReader:
 
 
 def _nearest_float(digits: str, value: float) -> float:
-    """Return the float nearest to decimal text; rounding it to a double first could give the neighbouring float."""
+    """Return the float nearest to the decimal text ``digits``, of which ``value`` is the nearest double.
+
+    Rounding the double again could give the neighbouring float.
+    """
     if digits.lower().startswith("0x"):
         return float(unpack("f", pack("f", value))[0])
     exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
@@ -261,7 +280,10 @@ def _nearest_float(digits: str, value: float) -> float:
 
 
 def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
-    """Return the function of this name; raise CertificateError if the C text does not define it."""
+    """Return the C function of this name; raise CertificateError if the file does not define it.
+
+    ``where`` is the file's name, for the message.
+    """
     if name not in functions:
         raise CertificateError(
             f"{where}: expected a function named {name}, got {', '.join(functions) or 'no function'}"
@@ -365,7 +387,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of a loop over samples from ``start`` to ``end``; return the tokens of the loop's body."""
+    """Read the head of a loop over the samples from ``start`` to ``end``, two names; return the tokens of its body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -392,7 +414,7 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the block's end."""
+    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the end of a block."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 

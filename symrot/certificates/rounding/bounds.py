@@ -139,7 +139,7 @@ def bound_tasks(
 
 
 def _outward(value: Fraction, direction: float) -> float:
-    """Return a fraction rounded to a float in the direction -inf (downward) or inf (upward)."""
+    """Return a fraction rounded to a float toward ``direction``, -inf or inf, so that a range never becomes smaller."""
     near = float(value)
     exact = Fraction(near)
     return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
@@ -334,7 +334,7 @@ def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
 
 
 def _units(value: Fraction) -> str:
-    """Return a number, rounded up to four significant digits, as decimal text."""
+    """Return a number as decimal text, rounded up to four significant digits: 2/3 -> ``0.6667``."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1

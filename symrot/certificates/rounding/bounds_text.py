@@ -98,7 +98,7 @@ def _result_phrase(section: Section, name: str, units: list[str]) -> str:
 
 
 def rounded_up(value: Fraction) -> str:
-    """Return a number, rounded up to three significant digits, as decimal text."""
+    """Return a number as decimal text, rounded up to three significant digits, so that a bound stays a bound."""
     if not value:
         return "0"
     exponent = 0
@@ -114,12 +114,15 @@ def rounded_up(value: Fraction) -> str:
 
 
 def region_of(section: Mapping[str, Any]) -> Region:
-    """Return the restrictions of the inputs, such as unit norm, under which a section's bounds hold."""
+    """Return the restrictions of inputs, such as unit norm, under which the bounds in a section ``rounding`` hold."""
     return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return the restrictions of the inputs, such as unit norm, as phrases of a sentence."""
+    """Return restrictions of inputs as phrases:
+
+    ``q0, q1, q2, q3: squares add up to 1, but for ..``; empty without any.
+    """
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:

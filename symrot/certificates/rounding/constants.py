@@ -71,7 +71,7 @@ def _sqrt(value: ExactRange) -> ExactRange:
 
 
 def _bounded_by_one(value: ExactRange) -> ExactRange:
-    """Return [-1, 1], the range of every sine and cosine."""
+    """Return [-1, 1], a range that contains every sine and cosine, whatever the range ``value`` of the angle is."""
     return ExactRange(Fraction(-1), Fraction(1))
 
 

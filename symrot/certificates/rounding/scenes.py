@@ -64,7 +64,10 @@ def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProble
 
 
 def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return the lines about rounding bounds in the header comment of a scene's C file, each as (title, text)."""
+    """Return the lines about rounding bounds in the header comment of a scene's C file, each as (title, text).
+
+    ``section`` holds the bounds, the section ``rounding`` of a certificate.
+    """
     names: dict[tuple[float, float], list[str]] = {}
     parameters = {f"p[{i}]": value for i, value in enumerate(inputs.parameters)}
     for place, ends in section["box"].items():

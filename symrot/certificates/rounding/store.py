@@ -36,7 +36,10 @@ def method() -> str:
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table that comes with symrot: ``bounds``, and ``method``, the hash of the sources that made them."""
+    """Return the table of bounds that comes with symrot, as a map with two keys.
+
+    ``bounds`` maps the key of a task to its bound; ``method`` is the hash of the sources that made them.
+    """
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
@@ -44,7 +47,10 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of a table of bounds, one bound per line, in the order of the keys."""
+    """Return the text of the table of bounds that comes with symrot, one bound per line, in the order of the keys.
+
+    ``bounds`` are pairs (key, result of a search); the key is the hash of the task.
+    """
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 
@@ -60,7 +66,10 @@ def _from_json(plain: Mapping[str, Any]) -> SearchResult:
 
 
 class Store:
-    """A store of rounding error bounds by key (a hash of the task): in memory, in symrot's table and in the cache."""
+    """A store of rounding error bounds: in memory, in the table that comes with symrot, and in the user's cache.
+
+    The key of a bound is a hash of its task: operations, box, and options of the search.
+    """
 
     def __init__(self) -> None:
         self.memory: dict[str, SearchResult] = {}

@@ -35,14 +35,20 @@ _HEAD, _TAIL = 8, 16  # doubles suffice from term 8 on: NEAR^8/10! < 2^-53; the 
 
 
 def two_sum(a: Any, b: Any) -> Pair:
-    """Return the rounded sum of two doubles and its rounding error, which is a double too."""
+    """Return ``a + b`` rounded to a double, and its rounding error, which is a double too.
+
+    The sum of the two results is exactly a + b (Knuth).
+    """
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """Return the rounded product of two doubles and its rounding error, which is a double too."""
+    """Return ``a * b`` rounded to a double, and its rounding error, which is a double too.
+
+    The sum of the two results is exactly a b (Dekker).
+    """
     product = a * b
     wide_a, wide_b = _SPLITTER * np.asarray(a), _SPLITTER * np.asarray(b)
     high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
@@ -51,7 +57,10 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double."""
+    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double.
+
+    A double-double number must have this form before it is used further.
+    """
     total = high + low
     return total, low - (total - high)
 
@@ -68,13 +77,13 @@ def subtract(a: Pair, b: Pair) -> Pair:
 
 
 def multiply(a: Pair, b: Pair) -> Pair:
-    """Return the product of two double-double numbers."""
+    """Return the product of the double-double numbers a and b, with a relative error of about 2^-104."""
     product, error = two_product(a[0], b[0])
     return normalized(product, error + (a[0] * b[1] + a[1] * b[0]))
 
 
 def divide(a: Pair, b: Pair) -> Pair:
-    """Return the quotient of two double-double numbers, computed by long division with three quotients of doubles."""
+    """Return a/b for double-double numbers, by long division: three quotients of doubles, each of the rest before."""
     first = a[0] / b[0]
     rest = subtract(a, multiply((first, 0.0), b))
     second = rest[0] / b[0]

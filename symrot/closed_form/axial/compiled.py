@@ -76,7 +76,10 @@ class Loops(NamedTuple):
 
 
 def available() -> bool:
-    """Return whether the compiled loops can be used: they are already loaded, or there is a C compiler."""
+    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler.
+
+    Otherwise NumPy and Python's integers compute them.
+    """
     return bool(_bound) or not codegen.missing()
 
 
@@ -227,7 +230,10 @@ _HALF = _turns_of(1, 2)  # half the angle in revolutions, as an integer and its 
 
 
 def _nearest(top: int, bottom: int) -> float:
-    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double."""
+    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double.
+
+    The ratio is an angular velocity or an acceleration.
+    """
     try:
         return top / bottom
     except OverflowError:

@@ -94,7 +94,10 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return the sine and the cosine of ``share`` times the angle of rotation about the driven axis, at times t."""
+        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis, at the times ``t``, s.
+
+        Half the angle gives the attitude; the share (C - A)/A gives the rotation of the transverse angular velocity.
+        """
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -114,7 +117,7 @@ class AxialMotion:
         return rates
 
     def _axial(self, t: Floats) -> Floats:
-        """Return the angular velocity about the driven axis at the times, rad/s."""
+        """Return the angular velocity about the driven axis, rad/s, at the times ``t``, s."""
         rate, push, (high, low) = float(self._rate), float(self._push), pair(-self._decay)
         spin: Floats = rate + push * t
         if not high:
@@ -208,7 +211,7 @@ class Driven:
         self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
-        """Return the motion from an initial state: angular velocity, rad/s, and attitude, body to space."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space."""
         axis, rates = self.axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
         components = numbers("quaternion", quaternion0, 4)
         if not any(components):

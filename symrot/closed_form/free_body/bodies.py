@@ -30,7 +30,7 @@ _TERMS = 5  # doubles whose sum represents a fraction to 2^-265
 
 
 class _Tensors(Structure):
-    """The C struct ``tensors`` of bodies_at.c: arrays of inertia tensors."""
+    """The C struct ``tensors`` of bodies_at.c: the inertia tensors of n bodies, for :func:`principal_bodies`."""
 
     _fields_ = (
         ("entries", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
@@ -95,7 +95,7 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 class PrincipalBodies(NamedTuple):
     """Arguments of the C function symrot_free_body_prepare for many bodies, and the indices of doubtful bodies.
 
-    The constants of a doubtful body have a last digit in doubt, so that the caller must compute them exactly.
+    Of a doubtful body, the last digit of a constant is not certain, so that the caller must compute it exactly.
     """
 
     moments: Floats  # (n, 6)
@@ -106,10 +106,11 @@ class PrincipalBodies(NamedTuple):
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return the constants of bodies in principal axes, computed from inertia tensors and angular velocities.
+    """Return the constants of free bodies, with principal axes computed from inertia tensors, for a batch.
 
     ``entries`` are the components xx, yy, zz, xy, xz and yz, kg m^2: arrays with one value per body, or one Fraction
-    for all bodies. Return None if such a Fraction is too large or too small to be a sum of doubles.
+    for all bodies. ``omega`` are the angular velocities in the given axes, shape (n, 3). Return None if such a Fraction
+    is too large or too small to be a sum of doubles.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):
@@ -130,7 +131,10 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly."""
+    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly.
+
+    C computes with such sums and must know whether they are exact.
+    """
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

@@ -99,15 +99,16 @@ class FreeRigidBody:
 
     @cached_property
     def fixed(self) -> Any:
-        """Principal moments and axes as integers, as :func:`symrot.closed_form.free_body.bodies.fixed_body` returns."""
+        """Principal moments and axes as integers for C; see :func:`symrot.closed_form.free_body.bodies.fixed_body`."""
         from symrot.closed_form.free_body.bodies import fixed_body
 
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return the components of an angular velocity along the principal axes, as fractions of one denominator.
+        """Return the components of an angular velocity along the principal axes, as three integers and a denominator.
 
-        The result is the list of the three integer numerators, and the common denominator.
+        Each component, rad/s, is one of the integers divided by the denominator. ``omega0`` is given in the body's own
+        axes.
         """
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
@@ -121,7 +122,10 @@ class FreeRigidBody:
         return [0 if abs(x) << NEGLIGIBLE_BITS < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial angular velocity and attitude, both along the given axes of the body."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space.
+
+        Both refer to the axes in which the body was given, which need not be principal axes.
+        """
         omega_before, omega, exact = self._rates
         if omega0 is not omega_before:
             rates, shared = self.along(numbers("omega", omega0, 3))
@@ -146,7 +150,7 @@ def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[flo
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return the differences I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
+    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
 
     Each sum hi + lo is a difference. The moments are the integers ``i``, divided by the common denominator ``shared``.
     """
@@ -172,7 +176,10 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect |L|^2 - 2 T I_mid for integer body rates, as two doubles whose sum it is."""
+        """Return the scaled defect of the motion with the integer body rates ``w``, as two doubles whose sum it is.
+
+        The defect is |L|^2 - 2 T I_mid, see :class:`Defect`.
+        """
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

@@ -74,7 +74,7 @@ class Gyrostat:
         self.moments, self.rotor = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([momentum[axis]])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space."""
         rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
         named = flatten_pairs([rates[k] for k in self.named])
         return prepared(

@@ -118,7 +118,7 @@ class Top:
         self.frame = Frame(axis, [-x for x in down] if pull > 0 else down)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space."""
         rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if self.free:
             return free_body.motion(self._inertia, rates, attitude)

@@ -49,7 +49,10 @@ class PortableGyrostat:
         self.attitude = mapping([hamilton(column, renaming) for column in columns])
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = times * float(self.scale)
         s, c = self.spin.circle(t)
         if omega is not None:

@@ -230,7 +230,10 @@ class PortableHeavyTop:
                                 float(r[2] * spin * self.scale)] for r in rows])  # fmt: skip
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = times * float(self.scale)
         (a, b), (da, db), whole = self._values(t)
         inverse = 1.0 / ((a * a.conj()).real + (b * b.conj()).real)

@@ -27,7 +27,7 @@ def number(high: float, low: float) -> Any:
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers: each is a sum hi + lo."""
+    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers, one for each sum hi + lo."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
@@ -46,14 +46,17 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles."""
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles.
+
+    The angles in closed forms are such phases, which keep all digits for any number of revolutions.
+    """
 
     rate: tuple[float, float]
     start: tuple[float, float]
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with a given rate, in revolutions per unit of time, and start, in revolutions.
+        """Return the phase with the given rate, in revolutions per unit of time, and start, in revolutions.
 
         If the phase is periodic, the start is reduced to the range from -1/2 to 1/2.
         """
@@ -105,7 +108,7 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return three results like those of :meth:`argument`, but for a phase that is not periodic.
+        """Return three results like those of :meth:`argument`, at the times ``t``, for a phase that is not periodic.
 
         The reduced phase is 0, the sign is 1, and the argument is the phase itself.
         """

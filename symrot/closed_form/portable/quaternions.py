@@ -26,7 +26,10 @@ def unit(a: Sequence[Any]) -> list[Any]:
 
 
 def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
-    """Return the unit quaternion of a proper rotation matrix, computed without loss of digits (Shepperd's method)."""
+    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows.
+
+    The formula divides by the largest component of the quaternion (Shepperd's method), so that no digits are lost.
+    """
     trace = r[0][0] + r[1][1] + r[2][2]
     rows = (
         [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],

@@ -81,7 +81,10 @@ class PortableSpinUp:
         self._near, self._table = np.array(take(16)).reshape(4, 4), table
 
     def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        """Write the samples into ``omega`` (n, 3) and ``quaternion`` (n, 4); skip an array that is None."""
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = (times * self._scale, np.zeros_like(times))
         sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
         if omega is not None:

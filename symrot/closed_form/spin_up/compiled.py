@@ -40,7 +40,10 @@ def limits() -> tuple[float, float, float]:
 
 
 def available() -> bool:
-    """Return whether the compiled loops can be used: they are already loaded, or there is a C compiler."""
+    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler.
+
+    Otherwise NumPy and Python's integers compute them.
+    """
     return bool(_bound) or not library.missing()
 
 
@@ -103,9 +106,10 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write the samples at the times into ``omega`` and ``quaternion``; skip an array that is None.
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
+        An array that is None is skipped. Return whether some times lie beyond :attr:`longest`; the samples there are
+        not valid.
         """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known

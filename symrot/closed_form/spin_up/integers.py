@@ -116,7 +116,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1 before, 0 near and 1 after resonance, for a motion whose axial rate Omega is ``omega``.
+        """Return -1 before, 0 near and 1 after resonance, at the time when the axial rate Omega equals ``omega``.
 
         If the asymptotic series holds everywhere (large kappa), the result is always 1.
         """
@@ -177,7 +177,10 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which the number of revolutions may be too large for double-double numbers."""
+        """The time, s, beyond which there may be too many revolutions for double-double numbers.
+
+        Integers compute the samples there.
+        """
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
@@ -210,7 +213,10 @@ class Integers:
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write one sample, at a time in s, into row i of ``rates`` and ``attitudes``; skip an array that is None."""
+        """Write the sample at ``time``, s, into row i of ``rates`` (n, 3) and ``attitudes`` (n, 4).
+
+        An array that is None is skipped.
+        """
         t = Fraction(time) * self._scale
         angle = self._turn[0] * t + self._turn[1] * t * t
         if rates is not None:

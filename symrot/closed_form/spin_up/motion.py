@@ -89,7 +89,11 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers all samples with too many revolutions for double-double numbers; fill the arrays."""
+        """Compute in integers all samples with too many revolutions for double-double numbers.
+
+        They are written into ``rates`` and ``attitudes``, which hold the other samples already; an array that is None
+        is skipped.
+        """
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -152,7 +156,7 @@ class SpunBody:
         self.shared = flatten_pairs([*self.moments, self.torque])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
-        """Return the motion from an initial angular velocity, rad/s, and attitude, body to space."""
+        """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space."""
         axis, rates, attitude = self.axis, numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if not any(attitude):
             raise InputError(f"expected a quaternion that is not zero, got {[float(x) for x in attitude]}")

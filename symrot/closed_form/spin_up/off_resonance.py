@@ -34,13 +34,13 @@ _SMALL = Fraction(1, 1 << _HALVINGS)
 
 
 def fixed(values: Sequence[Fraction]) -> Quaternion:
-    """Convert a unit quaternion from fractions to fixed-point integers."""
+    """Convert the components of a unit quaternion from fractions to integers in units of 2^-FIXED."""
     q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
     return q0, q1, q2, q3
 
 
 def product(a: Quaternion, *others: Quaternion) -> Quaternion:
-    """Return the product of unit quaternions in fixed-point integers."""
+    """Return the product of unit quaternions, from left to right; components are integers in units of 2^-FIXED."""
     for b in others:
         q0, q1, q2, q3 = hamilton(a, b)
         a = (q0 >> FIXED, q1 >> FIXED, q2 >> FIXED, q3 >> FIXED)
@@ -48,7 +48,7 @@ def product(a: Quaternion, *others: Quaternion) -> Quaternion:
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return the inverse of a unit quaternion: the vector part changes its sign."""
+    """Return the inverse of a unit quaternion q: q0 stays, the vector part changes its sign."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
@@ -96,7 +96,10 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return the size S = sqrt(Omega^2 + W^2) of the angular velocity in the rotating axes, rad/s."""
+        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial rate Omega = ``omega``.
+
+        S is the rate of rotation in the axes that rotate with the transverse angular velocity.
+        """
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
@@ -108,9 +111,9 @@ class Sweep:
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the correction delta, rad: the angle of rotation minus the time integral of the rate S of rotation.
+        """Return the correction delta, rad: the angle of rotation minus the time integral of the rate of rotation S.
 
-        In the rotating axes, S = sqrt(Omega^2 + W^2) with the axial rate Omega and the transverse rate W.
+        ``omega`` is the axial rate Omega. In the rotating axes, S = sqrt(Omega^2 + W^2) with the transverse rate W.
         """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
@@ -148,6 +151,9 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body in ``time`` s, far from resonance, from the rate Omega = ``start`` on."""
+        """Return the rotation of the body in ``time`` s, far from resonance, as a quaternion of fixed-point integers.
+
+        The rotation begins when the axial rate Omega equals ``start``.
+        """
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -37,7 +37,7 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 class Near:
     r"""Attitudes of a driven body near resonance, as a function of the scaled time x, for one value of kappa.
 
-    \|x\| is at most NEAR; :mod:`symrot.closed_form.spin_up.motion` explains x and kappa.
+    The size of x = Omega/sqrt(s) is at most NEAR; :mod:`symrot.closed_form.spin_up.motion` explains Omega, s and kappa.
     """
 
     def __init__(self, kappa: Fraction) -> None:

@@ -104,7 +104,10 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the asymptotic series of a motion with the given kappa^2 and 1/kappa^2; one of these may be zero."""
+    """Return the asymptotic series of a motion with kappa^2 = ``kappa2`` and 1/kappa^2 = ``inverse``.
+
+    One of the two may be zero, for a number outside the range of doubles.
+    """
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)

@@ -45,12 +45,11 @@ class Share:
         return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
 
     def extract(self) -> None:
-        """Replace the pair of factors or terms that most nodes contain by a new node.
+        """Replace the pair of factors or terms that most nodes contain by a new node, until no pair occurs twice.
 
-        Repeat until no pair occurs twice. In ``a*b*c`` and ``a*b*d`` the pair (a, b) becomes a node p, and the formulas
-        become ``p*c`` and ``p*d``. Quotients ``a/b`` are replaced first, then reciprocals ``1/b``, products, and sums.
-        Of several pairs that occur equally often, one without numbers comes first, then the one whose operands have the
-        lowest numbers.
+        In ``a*b*c`` and ``a*b*d`` the pair (a, b) becomes a node p, and the formulas become ``p*c`` and ``p*d``.
+        Quotients ``a/b`` are replaced first, then reciprocals ``1/b``, products, and sums. Of several pairs that occur
+        equally often, one without numbers comes first, then the one whose operands have the lowest numbers.
         """
         for kind, pairs, swap in (
             ("mul", self._quotient_pairs, self._swap_quotient),

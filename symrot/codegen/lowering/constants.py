@@ -209,7 +209,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
     """Return (sign, tree) of a sum of terms (sign, tree), with plus signs for most terms.
 
-    (-1, a + b) for ``-a - b``.
+    The sum ``-a - b`` gives -1 and the tree of ``a + b``.
     """
     if len(terms) == 1:
         return terms[0]

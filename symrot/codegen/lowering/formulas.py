@@ -56,7 +56,7 @@ def to_node(expr: Expr) -> Node:
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
     """Return the tree of one operator applied from left to right.
 
-    (a + b) + c for the nodes a, b, c and ``mark = "+"``.
+    The nodes a, b, c and ``mark = "+"`` give the tree of ``(a + b) + c``.
     """
     result = nodes[0]
     for node in nodes[1:]:

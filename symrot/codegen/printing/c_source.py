@@ -41,9 +41,10 @@ SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has re
 
 @dataclass(frozen=True)
 class Real:
-    """A floating-point type of C.
+    """A floating-point type of C, with the names and literals that C code for it contains.
 
-    Its name (``type``), the suffix of its functions (as in ``sinf``), and its precision.
+    ``type`` is its name, ``suffix`` that of its functions and literals (as in ``sinf``), ``precision`` its format, such
+    as ``binary64``.
     """
 
     type: str
@@ -277,7 +278,10 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function that <math.h> lacks, such as sinc, for batches: it contains no branches."""
+    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batches.
+
+    It computes both of its formulas and selects one of the results by their bits, so that compilers can vectorise it.
+    """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
@@ -340,7 +344,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
 
 
 def _blocks(size: str) -> list[str]:
-    """Return the first C lines of a loop over blocks of ``size`` samples."""
+    """Return the first C lines of a loop over a batch in blocks of ``size`` samples, from ``start`` to ``end``."""
     return [
         f"    for (size_t start = 0; start < n; start += {size}) {{",
         f"        const size_t end = n - start < {size} ? n : start + {size};",
@@ -350,10 +354,10 @@ def _blocks(size: str) -> list[str]:
 def _split(program: Program) -> list[Program]:
     """Return the programs for which a batch gets separate loops.
 
-    One for each output argument, or the whole program alone. Separate loops are faster if the whole program accesses
-    more arrays than processors prefetch and each part does not, provided that no operation is done twice and the number
-    of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines take longer than
-    memory access.
+    This is one program for each output argument, or the whole program alone. Separate loops are faster if the whole
+    program accesses more arrays than processors prefetch and each part does not, provided that no operation is done
+    twice and the number of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines
+    take longer than memory access.
     """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")

@@ -44,9 +44,9 @@ def _expression(node: Node) -> str:
 
 
 def _needed(program: Program) -> list[str]:
-    """Return the functions, such as sinc, that JAX lacks and the program needs.
+    """Return the functions, such as sinc, that JAX lacks and the text of a program must define.
 
-    Its calls, and those in derivatives of them.
+    They are those that the program calls, and those that occur in their derivatives.
     """
     needed = dict.fromkeys(called(program))
     for name in SLOPES:  # each is before its derivative

@@ -59,7 +59,7 @@ def without_branches(program: Program) -> bool:
 def called(program: Program) -> list[str]:
     """Return the names of the functions, such as sinc, that a program calls and <math.h> does not contain.
 
-    They are in the order of the table :data:`symrot.kernels.removable.FUNCTIONS`.
+    The emitted file must define them. They are in the order of the table :data:`symrot.kernels.removable.FUNCTIONS`.
     """
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
@@ -81,8 +81,8 @@ def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[State
     """Return the definition of a function that <math.h> lacks, such as sinc, as (parameters, temporaries, choice).
 
     ``choice`` is (relation, left, right, then, else): the function has the value ``then`` if the relation between
-    ``left`` and ``right`` holds, otherwise ``else``. For sinc(x) it chooses between the Taylor series near zero and the
-    quotient, or between the limit and the quotient. ``precision`` determines the number of Taylor coefficients.
+    ``left`` and ``right`` holds, otherwise ``else``. These are, for example, a Taylor series near zero and a quotient.
+    ``precision`` determines the number of Taylor coefficients.
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]

@@ -48,10 +48,10 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def numpy_source(program: Program, description: Description) -> str:
-    """Return the text of a Python module with one function. The text depends only on the arguments.
+    """Return the text of a Python module with one function that computes a kernel for one sample or n samples.
 
     The function takes the input arguments in order and returns each output argument as an array of shape (size,) or
-    (size, n).
+    (size, n). The text depends only on the arguments.
     """
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
     outputs = [a for a in program.signature.arguments if a.role == "out"]

@@ -102,7 +102,7 @@ class _Closure:
     def constant(self, node: Node) -> Polynomial:
         """Return a constant formula as a polynomial.
 
-        Each part that is not a polynomial, such as a root, is a variable.
+        Each part of it that is not a polynomial, such as a root, becomes a variable.
         """
         if node[0] == "number":
             return constant(node[1])
@@ -151,7 +151,10 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative of a variable along the motion, as a polynomial."""
+        """Return the time derivative of the variable with a number along the motion, as a polynomial.
+
+        It is zero for a constant. Raise _Open if the rate is not a polynomial.
+        """
         kind, what = self.variables[variable]
         if kind == "constant":
             return Polynomial({})
@@ -192,7 +195,11 @@ class _Closure:
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return the terms of a polynomial as (constant, state or None, polynomial in attitude and functions of t)."""
+        """Return a polynomial as a sum of products (constant, state, polynomial in the attitude and functions of t).
+
+        The state is an index, or None for a term without a state such as omega_1. Each polynomial becomes an auxiliary
+        state.
+        """
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))

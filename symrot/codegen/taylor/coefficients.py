@@ -15,9 +15,9 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """One computation of coefficients.
+    """One computation of Taylor coefficients, with one kind of number.
 
-    The values of inputs, the functions for this kind of number, the coefficients so far.
+    It holds the values of the inputs, the functions for this kind of number, and the coefficients so far.
     """
 
     constant: Callable[[Node], Any]

@@ -27,9 +27,10 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half mo
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])`` of series a and b; ``ends`` says whether it includes the terms k = 0 and n.
+    """A convolution ``sum(a[k] b[n-k])`` of the coefficients of two series, given by their indices a and b.
 
-    ``ends`` is ``both``, ``last`` (only k = n, with the newest coefficient of a) or ``none``.
+    ``ends`` says whether it includes the terms k = 0 and k = n: ``both``, ``last`` (only k = n, with the newest
+    coefficient of a) or ``none``.
     """
 
     a: int
@@ -121,7 +122,10 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Assign each convolution to a slot; products that occur with equal weights in the same sums share a slot."""
+        """Assign each convolution to a slot (a C variable that sums convolutions), and store the slots.
+
+        Products that occur with equal weights in the same sums share a slot.
+        """
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
         for place, s in enumerate((*self.series, *self.system.rates)):
@@ -161,7 +165,7 @@ class _Jet:
     def weight(self, node: Node) -> str:
         """Return the C expression of a positive constant.
 
-        A literal for a number, ``c[k]`` for a formula of parameters.
+        It is a literal for a number, and ``c[k]``, an element of the array of constants, for a formula of parameters.
         """
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
@@ -276,7 +280,7 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
-        """Return the C statement for coefficient n of a function of ``a t + b``.
+        """Return the C statement that sets ``name`` to coefficient ``n`` (C text) of s, a function of ``a t + b``.
 
         It uses coefficient n - 1 of the derivative of the function, for example of cosine if the function is sine.
         """
@@ -289,9 +293,10 @@ class _Jet:
         return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
 
     def _clock_start(self, i: int, s: Series) -> list[str]:
-        """Return the C statements for coefficient 0 of a pair of functions of ``a t + b``, such as sine and cosine.
+        """Return the C statements for coefficient 0 of series i, a function of ``a t + b`` such as sine.
 
-        For the first function of the pair, the statements of both are returned; for the second function, none.
+        Sine and cosine are computed together: for the first function of such a pair, the statements of both are
+        returned; for the second function, none.
         """
         both = sorted({i, s.operands[0]})
         if i != both[0]:
@@ -310,7 +315,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient n of all series and coefficient n + 1 of the states."""
+        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
+
+        ``phase`` and ``sums`` are those of :meth:`coefficient`.
+        """
         lines: list[str] = []
         made: set[int] = set()
 
@@ -371,7 +379,10 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return the number of registers for a loop over a group of slots: two sums for each slot, and the factors."""
+        """Return the number of registers that a C loop over the slots ``group`` needs.
+
+        It needs two for the sums of each slot, and one for each factor.
+        """
         terms = [c for i in group for _, c in self.slots[i].terms]
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
 

@@ -24,9 +24,9 @@ ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The place of a series.
+    """The place of a series: number of its row, its lane in this row, and a sign as factor.
 
-    Number of its row, lane in this row, and a sign (1, -1, or 0 for the value zero) as factor.
+    The sign is 1, -1, or 0; the last gives the value zero.
     """
 
     sign: int
@@ -39,9 +39,9 @@ _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each given by it
 
 
 class Column(NamedTuple):
-    """The convolutions ``sum(a[k] b[n-k])`` of two vectors of four series, lane by lane; ``ends`` gives the range of k.
+    """Four convolutions ``sum(a[k] b[n-k])``, one in each lane, of the vectors of four series a and b.
 
-    The range is k = 0 to n for ``both``, k = 1 to n for ``last``, and k = 1 to n - 1 for ``none``.
+    The range is k = 0 to n if ``ends`` is ``both``, k = 1 to n for ``last``, and k = 1 to n - 1 for ``none``.
     """
 
     a: Pack
@@ -57,7 +57,7 @@ class Slot(NamedTuple):
 
 
 class Term(NamedTuple):
-    """One term of a vector sum: four series, each multiplied by its own constant."""
+    """One term of a vector of four sums: four series (``pack``), each multiplied by its own constant of ``weights``."""
 
     pack: Pack
     weights: tuple[Node, ...]
@@ -105,7 +105,10 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time to compute one order of the series: the number of convolutions and of rows."""
+    """Return an estimate of the time that one order of the series takes: the number of columns (convolutions) and rows.
+
+    The layout with the smallest estimate is used.
+    """
     return len(layout.columns) + len(layout.rows)
 
 
@@ -256,15 +259,17 @@ class _Placer:
     def address(self, sign: int, series: int, lane: int) -> Address:
         """Return the position of a series in its row.
 
-        In the given lane if a copy is there, otherwise in its first lane.
+        A row may contain copies of a series; the one in ``lane`` is preferred to the first one.
         """
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Add a column, the convolutions of up to four pairs of series, and return its index.
+        """Add a column, which is a vector of up to four convolutions, and return its index.
 
-        In a lane without a pair, the column is zero if the lane is ``needed``, and otherwise has any value.
+        ``pairs`` holds the two series of each lane, each as (sign, index), and ``ends`` the range as in
+        :class:`Column`. In a lane without a pair, the column is zero if the lane is ``needed``, and otherwise has any
+        value.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -378,7 +383,8 @@ class _Placer:
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
         """Add a column of one product per lane, and return its index.
 
-        Each product is written as u v or as v u, whichever allows the column to use more packs that already exist.
+        ``terms`` holds a product (sign, u, v) of two series for each lane, or None. Each product is written as u v or
+        as v u, whichever allows the column to use more packs that already exist.
         """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
@@ -402,9 +408,9 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return (weight, products) with a positive first product.
+    """Return (weight, products) so that the first product has a positive sign.
 
-    If it is negative, all signs change, that of the weight too.
+    If it is negative, the signs of the weight and of all products are changed. So equal sums are recognised as equal.
     """
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

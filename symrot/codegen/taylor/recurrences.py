@@ -151,7 +151,10 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return (constant, series) whose product equals a linear form; proportional linear forms share one series."""
+        """Return (constant, series) whose product equals a linear form (a constant plus weighted series).
+
+        Proportional linear forms, such as ``2*u + 4*v`` and ``u + 2*v``, share one series, which is added if new.
+        """
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -174,7 +177,7 @@ class _Builder:
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return the sum or difference of two linear forms (a constant plus weighted series).
+        """Return ``left + sign*right`` for two linear forms (a constant plus weighted series), with ``sign`` 1 or -1.
 
         A sum in brackets that may become zero during the motion is not expanded; see :meth:`bracket`.
         """
@@ -220,7 +223,10 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v in terms of sech if v is a product of hyperbolic cosines, which could overflow; otherwise None."""
+        """Return 1/v as a linear form if v, the series ``number``, is a product of hyperbolic cosines; otherwise None.
+
+        It is computed from functions sech, because the hyperbolic cosines could overflow.
+        """
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
@@ -270,12 +276,12 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Add the Taylor series of functions whose derivatives contain each other, as sine and cosine.
+        """Return the index of the first of several Taylor series of functions whose derivatives contain each other.
 
-        Return the first index. Each function is given by its name and the sign of its derivative. ``partners`` holds,
-        for each function, the position of the function that its derivative contains: for sine the position of cosine.
-        Functions of ``a t + b`` get the rule ``clock``, others the rule ``driven``. Series that exist are not added
-        again.
+        Sine and cosine are such functions. Each is given by its name and the sign of its derivative. ``partners``
+        holds, for each function, the position of the function that its derivative contains: for sine the position of
+        cosine. The series are added if they do not exist: with the rule ``clock`` for functions of ``a t + b``,
+        otherwise with ``driven``.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -323,7 +329,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return ``1 + sign*u^2`` for a series u, as a linear form."""
+        """Return ``1 + sign*u^2`` as a linear form, where u is the series with index ``series``."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:
@@ -360,7 +366,7 @@ class _Builder:
 def _without_unused(system: Recurrences) -> Recurrences:
     """Return the system without the series that no rate needs, directly or through operands.
 
-    Series of states remain.
+    The series of states remain in any case.
     """
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
@@ -390,9 +396,9 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return an equal, shorter constant formula.
+    """Return a shorter constant formula of equal value.
 
-    Numbers are combined, factors of 1 removed, a sign is moved to the front.
+    Numbers are combined, factors of 1 removed, and a sign is moved to the front.
     """
     kind, parts = node[0], children(node)
     if kind == "neg":
@@ -415,9 +421,9 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return (sign, formula) whose product is a constant formula.
+    """Return (sign, formula) whose product is a constant formula; the formula has no sign in front.
 
-    (-1, a) for ``-a``, (-1, 2) for -2, otherwise (1, itself).
+    The formula ``-a`` gives -1 and a, the number -2 gives -1 and 2, and ``a`` gives 1 and a.
     """
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
@@ -428,7 +434,10 @@ def split_sign(node: Node) -> tuple[int, Node]:
 
 
 def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return (number, formula) whose product equals a constant formula: (-2, a) for ``-(2*a)``, (1, a) for ``a``."""
+    """Return (number, formula) whose product equals a constant formula.
+
+    The formula ``-(2*a)`` gives -2 and a, and ``a`` gives 1 and a.
+    """
     sign, size = split_sign(weight)
     if size[0] == "number":
         return (sign * size[1], ONE) if size[1] else (Fraction(1), size)

@@ -67,7 +67,10 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the Taylor recurrences of a right-hand side; raise InputError if order or blocks cannot be used."""
+    """Return the Taylor recurrences of the right-hand side ``program``.
+
+    Raise InputError if the order or the blocks cannot be used. The arguments are those of :func:`taylor_definitions`.
+    """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
     system = recurrences(program)
@@ -124,14 +127,17 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a pack.
+        """Return the C expression for the newest coefficients of a pack, a vector of four series.
 
-        A variable if one exists, else :meth:`picked`.
+        It is the name of a variable if there is one, otherwise the result of :meth:`picked`.
         """
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that collects the newest coefficients of a pack from the rows of its four series."""
+        """Return the C expression of the newest coefficients of a pack, collected from the variables of rows.
+
+        Row i has the variable ``r{i}``; the four series of a pack may lie in several rows.
+        """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -148,8 +154,8 @@ class _Jet:
     def column(self, index: int, phase: str, sums: str) -> str:
         """Return the C expression for coefficient n of column ``index``, a vector of four convolutions.
 
-        Empty if it is zero. It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the
-        terms k = 0 and k = n.
+        It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the terms k = 0 and k =
+        n. An empty text stands for zero.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
@@ -171,11 +177,11 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a row of the rule ``sum``.
+        """Return the C expression for a row of the rule ``sum``, which consists of four weighted sums of series.
 
-        Four weighted sums of series, times ``factor`` if not empty. ``phase`` and ``sums`` are explained in the class
-        and in :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added
-        last, so that the other additions need not wait for them.
+        They are multiplied by ``factor`` if it is not empty. ``phase`` and ``sums`` are explained in the class and in
+        :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added last,
+        so that the other additions need not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -260,7 +266,11 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements for coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``; u may be 1."""
+        """Return the C statements that set ``name`` to coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``.
+
+        ``terms`` holds the C expressions of v and, unless u is constant, of u; ``total`` is that of the sum of known
+        products.
+        """
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -272,7 +282,10 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression, with calls of the C library, for coefficient 0 of four functions such as exp."""
+        """Return the C expression for coefficient 0 of the four functions in a row, such as exp.
+
+        It calls the C library for each lane.
+        """
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -339,7 +352,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient n of all series and coefficient n + 1 of the states."""
+        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
+
+        ``phase`` and ``sums`` are explained in the class and in :meth:`column`.
+        """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 

@@ -139,8 +139,8 @@ class _Mover:
     def gathered(self, node: Node) -> _Form | None:
         """Return a sum in which all terms of the form a t + b are combined into one.
 
-        Far from t = 0 their b may nearly cancel. Return None if all terms have this form, if fewer than two have it, or
-        if none of these terms contains the time; then nothing is to be combined.
+        Far from t = 0 the constants b may nearly cancel. The result is None if there is nothing to combine: if all
+        terms have this form, if fewer than two have it, or if none of these terms contains the time.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -224,9 +224,10 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the coefficients of t^0, t^1, .. of the result of an operation, or None if it is not a polynomial in t.
+    """Return the result of an operation as a polynomial in t: its coefficients, lowest power first.
 
-    ``parts`` holds the coefficients of each operand, or None for an operand that is not a polynomial in t.
+    Return None if it is not a polynomial. ``parts`` holds the coefficients of each operand, or None for an operand that
+    is not a polynomial in t.
     """
     if any(part is None for part in parts):
         return None

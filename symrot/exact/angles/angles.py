@@ -21,9 +21,10 @@ PARTS = 24
 
 @dataclass(frozen=True)
 class LinearForm:
-    """An angle ``sum(coefficient * atom) + half_turns * pi``.
+    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``; ``terms`` holds the pairs (atom, coefficient).
 
-    ``half_turns`` is a multiple of 1/24; a constant angle with another denominator is a multiple of the atom ``pi``.
+    An atom is a symbol or another factor that is not a number. ``half_turns`` is a multiple of 1/24; a constant angle
+    with another denominator is a multiple of the atom ``pi``.
     """
 
     terms: tuple[tuple[Expr, Fraction], ...]
@@ -31,10 +32,10 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return the linear form of an angle (rad): atoms (such as symbols) with rational factors, and a multiple of pi.
+    """Return an angle (rad) as rational multiples of atoms plus a multiple of pi.
 
-    Products are expanded; every factor that is not a number is an atom. With ``turns=False``, used for the exponent of
-    an exponential, ``pi`` is an atom as any symbol is.
+    In ``2*phi - psi/2 + pi/3`` the atoms are phi and psi. Products are expanded; every factor that is not a number is
+    an atom. With ``turns=False``, used for the exponent of an exponential, ``pi`` is an atom as any symbol is.
 
     Raises
     ------
@@ -57,9 +58,10 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
 
 
 def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
-    """Return, for each atom (symbol), the largest rational number of which all its coefficients are integer multiples.
+    """Return, for each atom, the greatest common divisor of its coefficients in all ``forms``, a rational number.
 
-    The base angle of the atom is this number times the atom: ``theta/2`` if ``theta`` and ``theta/2`` occur.
+    The base angle of the atom is this number times the atom: ``theta/2`` if ``theta`` and ``theta/2`` occur. Every
+    angle is an integer combination of base angles.
     """
     bases: dict[Expr, Fraction] = {}
     for form in forms:
@@ -88,14 +90,15 @@ def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
 
 
 def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
-    """Return the base angle (rad) of an atom, such as ``theta/2``, as an expression."""
+    """Return the base angle ``coefficient * atom`` in rad, such as ``theta/2``, as an expression."""
     return Rational(coefficient.numerator, coefficient.denominator) * atom
 
 
 def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
-    """Return the Chebyshev polynomials T_n and U_(n-1), ``n >= 1``, as integer coefficients, lowest power first.
+    """Return the Chebyshev polynomials T_n and U_(n-1) for n = ``multiple`` >= 1, as integer coefficients.
 
-    ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x) U_(n-1)(cos x)``.
+    The lowest power comes first. They express multiples of an angle: ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x)
+    U_(n-1)(cos x)``.
     """
     first, first_next = [1], [0, 1]  # T_0, T_1
     second, second_next = [0], [1]  # U_(-1), U_0
@@ -106,7 +109,7 @@ def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
 
 
 def _double_shift_minus(last: list[int], before: list[int]) -> list[int]:
-    """Return the coefficients of ``2 x * last - before``, the recurrence of both kinds of Chebyshev polynomials."""
+    """Return the coefficients of ``2 x * last - before``, the Chebyshev polynomial after ``before`` and ``last``."""
     result = [0] + [2 * c for c in last]
     for power, coefficient in enumerate(before):
         result[power] -= coefficient

@@ -26,6 +26,7 @@ Monomial = tuple[int, ...]
 class Number:
     """An algebraic number that is a variable (generator) of the ring: a root, or ``2 cos(pi/order)``.
 
+    ``place`` is the index of the variable, ``degree`` a bound on the degree that the number adds to the field.
     ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size. A root has
     ``index`` and ``inside`` (its radicand), a cosine has ``order``; ``needs`` are the generators in the radicand.
     """
@@ -50,9 +51,10 @@ def cosine_number(place: int, degree: int, order: int) -> Number:
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return a root of a polynomial in known numbers as an algebraic number.
+    """Return the root ``inside^(1/index)`` as an algebraic number, with the bounds that proofs need.
 
-    ``place`` is the index of its variable in the ring; ``inside`` is the polynomial.
+    ``inside`` is a polynomial in the numbers ``known`` (index of the variable -> number); ``place`` is the index of the
+    root's own variable in the ring.
     """
     needs = _places(inside)
     needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
@@ -63,7 +65,11 @@ def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int,
 
 
 def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
-    """Return whether a polynomial in algebraic numbers is proven to be zero."""
+    """Return whether a polynomial in the algebraic numbers ``known`` is proven to be zero.
+
+    ``known`` maps indices of variables to numbers. False means that it is not zero, or that the proof needs too many
+    digits.
+    """
     terms = list(poly.items())
     if not terms:
         return True
@@ -95,7 +101,11 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return a factor that makes a sum an algebraic integer, and a power of two that bounds its conjugates."""
+    """Return (multiplier, bits) for a sum of terms (powers of the variables, coefficient).
+
+    The multiplier makes the sum an algebraic integer, whose conjugates are then below 2^bits. ``known`` maps the
+    indices of the variables to their numbers.
+    """
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))

@@ -28,14 +28,14 @@ Beyond it a constant stays a symbol."""
 
 
 def order(denominator: int) -> int:
-    """Return the even N for which every cosine and sine of k pi/denominator is a polynomial in 2 cos(pi/N)."""
+    """Return the even N for which cosines and sines of all k pi/denominator are polynomials in 2 cos(pi/N)."""
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether the field of 2 cos(pi/N), needed for multiples of pi/denominator, has an allowed degree.
+    """Return whether multiples of pi/denominator are read as polynomials in 2 cos(pi/N) with N = ``order(..)``.
 
-    The limit is ``LARGEST_DEGREE``; N is ``order(denominator)``.
+    False if the degree of this number over the rationals exceeds ``LARGEST_DEGREE``.
     """
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
@@ -87,7 +87,10 @@ def _minus(first: list[int], second: list[int]) -> list[int]:
 
 
 def _rest(poly: list[int], relation: tuple[int, ...]) -> list[int]:
-    """Return the remainder of the division of a polynomial by a monic polynomial."""
+    """Return the remainder of the division of ``poly`` by the monic polynomial ``relation``.
+
+    Both are lists of coefficients, lowest power first.
+    """
     poly = list(poly)
     size = len(relation) - 1
     while len(poly) > size:

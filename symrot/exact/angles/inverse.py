@@ -33,7 +33,7 @@ def _atan2(y: Expr, x: Expr) -> Pair:
 
 
 def _half(cosine: Expr, sine: Expr) -> Pair:
-    """Return the cosine and sine of half an angle between -pi and pi from the cosine and sine of the angle."""
+    """Return the cosine and sine of a/2, given those of an angle a between -pi and pi, where cos(a/2) >= 0."""
     below = sqrt(HALF + cosine / 2)
     return below, sine / (2 * below)
 
@@ -43,7 +43,10 @@ INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _ata
 
 
 def cosine_sine(angle: Expr, halvings: int) -> Pair:
-    """Return the cosine and sine of ``angle / 2**halvings``, where ``angle`` is an inverse function such as asin(u)."""
+    """Return the cosine and sine of ``angle / 2**halvings`` without trigonometric functions.
+
+    The angle is an inverse function: for ``asin(u)`` and 0 halvings they are sqrt(1 - u^2) and u.
+    """
     pair = INVERSE[type(angle)](*angle.args)
     if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
         (u,) = angle.args
@@ -61,9 +64,9 @@ _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return a range that contains all values of an inverse function such as atan(u).
+    """Return (low, high, low attained, high attained): a range of the values of an inverse function, in units of pi.
 
-    Known signs of its arguments narrow the range.
+    For ``atan(u)`` it is (-1/2, 1/2, False, False). Known signs of the arguments narrow the range.
     """
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)

@@ -12,17 +12,17 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the cosine and sine of ``coefficient * atom`` have formulas without trigonometric functions.
+    """Return whether cosine and sine of ``coefficient * atom`` follow from roots alone, as those of ``2*asin(u)`` do.
 
-    This is so if the atom is an inverse trigonometric function and the coefficient's denominator is a power of two.
+    This is so if the atom is an inverse trigonometric function and the coefficient's denominator is 1, 2, 4 or 8.
     """
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without its multiples of inverse trigonometric functions, such as 2 asin(u).
+    """Return the part of an angle without terms such as ``2*asin(u)``, whose cosine and sine are known by formulas.
 
-    :func:`is_bound` decides which multiples these are.
+    :func:`is_bound` decides which terms these are.
     """
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
@@ -41,5 +41,8 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return cosines and sines of angles whose sum is ``coefficient * atom``, such as ``3/2 * asin(u)``."""
+    """Return the cosines and sines of angles whose multiples add up to ``coefficient * atom``, such as ``3/2*asin(u)``.
+
+    The roots in them must be variables of the ring before the angle can be read.
+    """
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

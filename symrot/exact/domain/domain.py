@@ -12,9 +12,11 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return the divisors of formulas, each as (divisor as written, factor that must not be zero).
+    """Return what must not be zero in the formulas of a ring, as pairs (divisor as written, one of its factors).
 
-    Factors whose numbers are in ``granted`` are left out. A factor that is a root is replaced by its radicand.
+    Each factor of a divisor has a pair; a factor that is a root is replaced by its radicand. Factors whose numbers are
+    in ``granted`` are left out, and so are those that cannot be zero. Arguments of logarithms and ``x^2 + y^2`` of
+    ``atan2(y, x)`` count too.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
@@ -45,8 +47,8 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 def split_radicands(ring: FormulaRing) -> list[Expr]:
     """Return the radicands that proofs assume to be nonnegative, although the formulas may be real without this.
 
-    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``. Where f is zero and P is negative, the first is 0, but the
-    second is not real.
+    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, and P is in the result. Where f is zero and P is negative,
+    the first is 0, but the second is not real.
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
@@ -55,14 +57,15 @@ def split_radicands(ring: FormulaRing) -> list[Expr]:
 def is_dense(ring: FormulaRing) -> bool:
     """Return whether the points at which no divisor is zero are known to be dense among all real points.
 
-    They are dense for formulas in the decidable scope, but maybe not if roots occur, or numbers that are not algebraic,
-    or angles and exponents that may depend on each other, as ``x log(4)`` and ``x log(2)`` do.
+    Then an equation that is proven there is not vacuous. They are dense for formulas in the decidable scope, but maybe
+    not if roots occur, or numbers that are not algebraic, or angles and exponents that may depend on each other, as ``x
+    log(4)`` and ``x log(2)`` do.
     """
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 
 
 def _is_plain(atom: Expr) -> bool:
-    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers."""
+    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers alone."""
     if is_leaf(atom):
         return True
     if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
@@ -71,13 +74,19 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return formulas that are nonnegative wherever the formulas of the ring are defined, such as radicands."""
+    """Return formulas that are nonnegative wherever the formulas of the ring are defined.
+
+    They are the radicands, and 1 + x and 1 - x for asin(x) and acos(x).
+    """
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 
 
 def _leaves(ring: FormulaRing) -> Iterable[Expr]:
-    """Return the inverse functions and logarithms in the formulas of a ring, also those inside sines and cosines."""
+    """Return the inverse functions and logarithms in the formulas of a ring, whose arguments limit the domain.
+
+    Those inside sines and cosines are included.
+    """
     leaves = [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
     return [*(leaf for leaf in leaves if leaf not in ring.own_logarithms), *ring.logarithms]
 
@@ -95,5 +104,5 @@ def _nonnegative(leaf: Expr) -> list[Expr]:
 
 
 def _is_square(base: Expr) -> bool:
-    """Return whether a radicand is an even power of a real number."""
+    """Return whether a radicand is written as an even power of a real number, so that it is never negative."""
     return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

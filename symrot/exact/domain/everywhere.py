@@ -26,13 +26,16 @@ MOST_BITS = 2000
 
 
 def fails_everywhere(need: Need) -> bool:
-    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at no real point."""
+    """Return whether a condition is proven to hold at no real point, as ``cos(x) - 2 >= 0`` (see :class:`Need`)."""
     low, high = range_everywhere(need.formula)
     return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return bounds (low, high) that hold for a formula at all real points at which it is defined."""
+    """Return (low, high): bounds of a formula that hold at all real points where it is defined.
+
+    For ``cos(x) - 2`` they are -3 and -1. A bound is a fraction, or infinite if none is known.
+    """
     return _range(formula, {})
 
 
@@ -68,7 +71,10 @@ def _of_number(node: Expr) -> Range:
 
 
 def _end(value: Any) -> Fraction:
-    """Return the exact value of an endpoint of an interval as a fraction."""
+    """Return an endpoint of an mpmath interval as an exact fraction.
+
+    Raise OverflowError if it is too large or too small.
+    """
     sign, mantissa, power, _ = value._mpi_[0]
     if abs(power) > MOST_BITS:
         raise OverflowError
@@ -114,9 +120,9 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return a function that maps the range of an argument to the range of an increasing function such as log.
+    """Return a function that maps a range (low, high) of u to the range of f(u), where f is increasing, as log is.
 
-    ``least`` and ``most`` are the limits of the increasing function at the ends of its domain.
+    ``function`` is f; ``least`` and ``most`` are its limits at the ends of its domain.
     """
 
     def of(argument: Range) -> Range:

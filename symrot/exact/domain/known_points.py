@@ -36,7 +36,10 @@ Point = dict[Expr, Any]
 
 
 def holds(need: Need, point: Point) -> bool:
-    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at a point."""
+    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at a point.
+
+    The point maps symbols to fractions or intervals. False means that no proof was found.
+    """
     if need.sign == "real":
         return False
     held = enclosure(need.formula, point)
@@ -94,7 +97,7 @@ class _Search:
         return None
 
     def whole(self, point: Point) -> bool:
-        """Return whether all symbols that are assumed to be integers have integer values at a point."""
+        """Return whether every symbol that is assumed to be an integer has an integer value at a point."""
         return all(not leaf.is_integer or getattr(value, "denominator", 0) == 1 for leaf, value in point.items())
 
     def starts(self, source: Random) -> Iterator[Point]:
@@ -121,12 +124,18 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point improved one value at a time, as long as each change leaves fewer conditions violated."""
+        """Return a point at which fewer conditions are violated, or the same point; one value is changed at a time.
+
+        All conditions may hold there in double precision, which proves nothing.
+        """
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point improved by steps that reduce the violation of conditions; a step without effect is halved."""
+        """Return a point at which the violated conditions are violated less, by steps in one value at a time.
+
+        If no step improves the point, shorter steps are tried.
+        """
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
@@ -139,7 +148,10 @@ class _Search:
         return point
 
     def depth(self, point: Point) -> float:
-        """Return minus the total violation of the conditions at a point, in double precision; zero if all hold."""
+        """Return minus the sum of all violations of the conditions at a point, in double precision; 0 if all hold.
+
+        For the condition ``x >= 0`` at x = -2 the violation is 2.
+        """
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)
@@ -172,7 +184,7 @@ class _Search:
 
 
 def _allowed(leaf: Expr, value: Fraction) -> bool:
-    """Return whether a rational value agrees with the assumptions on a symbol, such as positive or integer."""
+    """Return whether a rational ``value`` agrees with SymPy's assumptions on the symbol ``leaf``, such as positive."""
     return not (
         (leaf.is_positive and value <= 0) or (leaf.is_negative and value >= 0) or (leaf.is_nonnegative and value < 0)
         or (leaf.is_nonpositive and value > 0) or (leaf.is_nonzero and value == 0)

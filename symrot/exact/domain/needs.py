@@ -21,9 +21,10 @@ __all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
 
 @dataclass(frozen=True)
 class Need:
-    """A condition on a formula, without which a larger formula that contains it has no real value.
+    """A condition such as ``x >= 0``, without which a formula that contains ``sqrt(x)`` has no real value.
 
-    ``sign`` is ``">= 0"``, ``"> 0"`` or ``"!= 0"``; or ``"real"`` for a call of a function that symrot does not know.
+    ``formula`` is the left side. ``sign`` is ``">= 0"``, ``"> 0"`` or ``"!= 0"``; or ``"real"`` for a call of a
+    function that symrot does not know, whose value may not be real.
     """
 
     formula: Expr
@@ -63,7 +64,10 @@ def is_leaf(node: Expr) -> bool:
 
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
-    """Return the symbols, functions of time and derivatives in formulas, each once, in the same order in every run."""
+    """Return the free real numbers in formulas (:func:`is_leaf`), each once, in the same order in every run.
+
+    They are symbols, functions of time, their derivatives, and matrix entries.
+    """
     leaves = {node for node in _pieces(formulas) if is_leaf(node)}
     return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
@@ -76,7 +80,10 @@ def assumptions_of(leaf: Expr) -> list[Need]:
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return the conditions under which formulas and these conditions are real; obvious ones are omitted."""
+    """Return the conditions under which all ``formulas`` are real: ``x > 0`` and ``y != 0`` for ``log(x)/y``.
+
+    Conditions that follow from SymPy's assumptions on the symbols are omitted.
+    """
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):
@@ -106,7 +113,7 @@ def _needs(node: Expr) -> Iterator[Need]:
 def _granted(need: Need) -> bool:
     """Return whether a condition needs no proof, because it follows from SymPy's assumptions on the symbols.
 
-    For a formula without symbols, the result can be True only if the formula is a rational number.
+    For a number such as ``sqrt(2) - 1``, SymPy's own numerical answer is not trusted, unless the number is rational.
     """
     formula = need.formula
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
@@ -116,7 +123,10 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every subexpression of formulas once, without recursion; the inside of symbols is skipped."""
+    """Yield every subexpression of formulas once, without recursion.
+
+    A function of time or another free number (:func:`is_leaf`) is not split.
+    """
     stack, seen = list(formulas), set()
     while stack:
         node = stack.pop()

@@ -32,14 +32,14 @@ Row = list[float]
 
 
 class EquationSystem:
-    """Equations ``formula = 0`` in given unknowns, which Newton's method solves from a starting point.
+    """Equations ``formula = 0`` in several unknowns, with Newton's method and with a proof that a solution exists.
 
     Parameters
     ----------
     formulas : sequence of Expr
         The formulas that must be zero.
     leaves : sequence of Expr
-        All symbols, functions of time and derivatives in the formulas.
+        The unknowns: all symbols, functions of time and derivatives in the formulas.
     """
 
     def __init__(self, formulas: Sequence[Expr], leaves: Sequence[Expr]) -> None:
@@ -50,7 +50,7 @@ class EquationSystem:
         self.slopes = [[formula.diff(name) for name in self.names.values()] for formula in self.formulas]
 
     def solved(self, start: Mapping[Expr, float]) -> dict[Expr, float] | None:
-        """Return the point to which Newton's method with shortest steps converges, or None if it diverges."""
+        """Return the point to which Newton's method converges from ``start``, in doubles, or None if it diverges."""
         values = {self.names[leaf]: float(start[leaf]) for leaf in self.leaves}
         for _ in range(MOST_STEPS if self.small else 0):
             try:
@@ -68,7 +68,10 @@ class EquationSystem:
         return None
 
     def box(self, near: Mapping[Expr, float]) -> dict[Expr, Any] | None:
-        """Return intervals and fractions for the unknowns that provably contain a solution near a point, or None."""
+        """Return values of the unknowns (fractions or intervals) that provably contain a solution near ``near``.
+
+        Return None if the proof fails.
+        """
         values = {self.names[leaf]: near[leaf] for leaf in self.leaves}
         try:
             rows = [[float_at(slope, values, {}) for slope in row] for row in self.slopes]
@@ -118,7 +121,10 @@ def _point(value: Fraction) -> Any:
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:
-    """Return the shortest vector ``step`` with ``rows * step = residuals``, damped if the rows are dependent."""
+    """Return the shortest vector ``step`` with ``rows * step = residuals``, the step of Newton's method.
+
+    If the rows are dependent, the equations are damped and hold approximately.
+    """
     gram = [[sum(a * b for a, b in zip(p, q, strict=True)) for q in rows] for p in rows]
     size = max(gram[n][n] for n in range(len(gram)))
     if not size:
@@ -151,7 +157,10 @@ def _inverted(rows: list[Row]) -> list[Row] | None:
 
 
 def _pivots(rows: list[Row]) -> list[int] | None:
-    """Return indices of independent columns, as many as there are rows, best pivot first; None if there are too few."""
+    """Return the indices of independent columns of a matrix, as many as it has rows, the best pivot first.
+
+    The unknowns of these columns are solved for, the others are fixed. Return None if there are too few.
+    """
     work = [list(row) for row in rows]
     chosen: list[int] = []
     for step in range(len(work)):

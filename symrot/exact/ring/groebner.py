@@ -76,9 +76,10 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Add a reduced polynomial to the basis, and its pairs with the other members to the queue.
+        """Add a polynomial to the basis, and its pairs with the other members to the queue ``pairs``.
 
-        The pair with the smallest least common multiple is first.
+        ``terms`` is the polynomial, reduced by the basis. The queue begins with the pair whose leading terms have the
+        smallest least common multiple.
         """
         if not terms:
             return
@@ -95,7 +96,11 @@ class _Basis:
             pairs.clear()  # a constant generates the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether a third polynomial makes the pair (i, j) superfluous (Buchberger's chain criterion)."""
+        """Return whether the pair of members i and j can be skipped by Buchberger's chain criterion.
+
+        This is so if the leading term of a third member divides the pair's least common multiple, and its pairs with i
+        and j are dealt with otherwise.
+        """
         both = tuple(map(max, self.leads[i], self.leads[j]))
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both
@@ -112,7 +117,10 @@ class _Basis:
         return total
 
     def subtract(self, total: Terms, terms: Terms, shift: Monomial, times: Any) -> None:
-        """Subtract ``times * shift`` times a polynomial (``terms``) from the polynomial ``total``, in place."""
+        """Subtract a multiple of the polynomial ``terms`` from the polynomial ``total``, in place.
+
+        The multiple is the number ``times``, times the monomial ``shift``.
+        """
         self.spend(len(terms))
         zero = self.ring.domain.zero
         for mono, coefficient in terms.items():
@@ -124,7 +132,7 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return the remainder of a polynomial after division by the members of a basis.
+        """Return the remainder of a polynomial (``terms``) after division by ``members`` of a basis.
 
         No leading term of a member divides a term of the remainder.
         """

@@ -60,7 +60,7 @@ def product_of(
     content: Rational, above: PolyElement, below: PolyElement, generators: Sequence[Expr],
     roots: Mapping[int, tuple[int, PolyElement]],
 ) -> Product:  # fmt: skip
-    """Return the fraction ``content * above / below`` as a product of powers of irreducible factors.
+    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors.
 
     ``generators`` are the variables of the polynomials. ``roots`` holds, for the number of a variable that is a root g,
     the index n and the polynomial P of its relation ``g^n = P``.
@@ -94,13 +94,20 @@ def product_of(
 
 
 def sums_of_logarithms(products: Mapping[Expr, Product]) -> dict[Expr, Expr]:
-    """Return, for each logarithm, the sum of logarithms that equals it wherever all of the logarithms have a value."""
+    """Return, for each logarithm, an equal sum of simpler logarithms: ``2*log(|a|) + log(b)`` for ``log(a^2*b)``.
+
+    ``products`` maps each logarithm to its argument in factors. The sums are equal wherever all of the logarithms have
+    a value.
+    """
     signs = _known_signs(list(products.values()))
     return {node: _sum(product, signs) for node, product in products.items()}
 
 
 def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
-    """Return the signs of factors that follow because each of the products is positive."""
+    """Return the signs, 1 or -1, of those factors whose sign follows because all ``products`` are positive.
+
+    They are arguments of logarithms. If a b and a are positive, so is b. Factors of unknown sign are absent.
+    """
     factors = {factor for product in products for factor in product.powers}
     signs = {factor: sign for factor in factors if (sign := _sign(factor))}
     open_products = [product for product in products if product.sign]
@@ -117,7 +124,7 @@ def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
 
 
 def _sign(factor: Expr) -> int:
-    """Return 1 or -1 for a factor of known sign, else 0."""
+    """Return 1 or -1 for a factor whose sign SymPy's assumptions or its value show, else 0."""
     if factor.is_number:
         interval = enclosure(factor)
         return 0 if interval is None or 0 in interval else 1 if interval.a > 0 else -1

@@ -24,10 +24,11 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Split a fraction above/below into P and squares of nonnegative factors; return (P, factors, loose).
+    """Split the fraction above/below into P and squares of nonnegative factors; return (P, factors, loose).
 
-    ``above/below`` is P times the product of all factor^(2 n). ``loose`` is true if a factor f may be zero where P is
-    negative; there ``sqrt(P f^2)`` is real but ``sqrt(P)`` is not.
+    ``factors`` holds pairs (factor, n), and ``above/below`` is P times the product of all factor^(2 n): ``x^2 y`` gives
+    y and (|x|, 1). ``loose`` is true if a factor f may be zero where P is negative; there ``sqrt(P f^2)`` is real but
+    ``sqrt(P)`` is not.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
@@ -67,9 +68,9 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A square root as a product of other square roots: ``sqrt(number) * product(roots) / product(factor^n)``.
+    """A square root expressed by others: ``sqrt(number) * product(roots) / product(factor^n)``.
 
-    ``divisors`` holds the pairs (factor, n).
+    ``divisors`` holds the pairs (factor, n). For sqrt(a b) with the roots sqrt(a) and sqrt(b), there are none.
     """
 
     number: Rational
@@ -78,10 +79,10 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return, for each square root that is a product of other roots, its expression by these roots.
+    """Return the square roots that are products of other roots: a map from each to its expression by these roots.
 
     The method is linear algebra modulo 2: a root is represented by the irreducible factors with odd exponents in its
-    radicand.
+    radicand. The roots of ``a b`` and ``b c`` give that of ``a c``, since b has an even exponent in their product.
 
     Parameters
     ----------
@@ -118,9 +119,10 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
-    """Return a polynomial as a rational number times powers of irreducible factors.
+    """Return (number, powers): a polynomial as a rational number times powers of irreducible factors.
 
-    A polynomial with more than ``MOST_TERMS`` terms is not factored: it is the only factor.
+    ``powers`` maps each factor to its exponent. A polynomial with more than ``MOST_TERMS`` terms is not factored: it is
+    the only factor.
     """
     if poly.is_ground or len(poly) > MOST_TERMS:
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})

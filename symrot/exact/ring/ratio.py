@@ -32,9 +32,9 @@ class TooLarge(InputError):
 
 @dataclass(frozen=True)
 class Ratio:
-    """A fraction ``numerator / (constant * product of factors)``.
+    """A fraction ``numerator / (constant * product of factors)`` in a polynomial ring.
 
-    ``factors`` are pairs (number of the factor, exponent), sorted by number.
+    ``factors`` are pairs (number of the factor in :class:`Ratios`, exponent), sorted by number.
     """
 
     numerator: PolyElement
@@ -72,7 +72,7 @@ class Ratios:
         return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
 
     def add(self, terms: Sequence[Ratio]) -> Ratio:
-        """Return the sum of fractions of polynomials; fractions with equal denominators are added first."""
+        """Return the sum of the fractions ``terms``; fractions with equal denominators are added first."""
         groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
         for term in terms:
             key = (term.constant, term.factors)
@@ -97,7 +97,7 @@ class Ratios:
         return Ratio(total, common_constant, tuple(sorted(common.items())))
 
     def multiply(self, factors: Sequence[Ratio]) -> Ratio:
-        """Return the product of fractions of polynomials; small numerators are multiplied first."""
+        """Return the product of the fractions ``factors``; small numerators are multiplied first."""
         numerator, constant = self.ring.one, 1
         below: dict[int, int] = {}
         for factor in sorted(factors, key=lambda f: len(f.numerator)):
@@ -109,7 +109,7 @@ class Ratios:
         return Ratio(numerator, constant, tuple(sorted(below.items())))
 
     def power(self, base: Ratio, exponent: int) -> Ratio:
-        """Return a fraction of polynomials to an integer power >= 0."""
+        """Return the fraction ``base`` to an integer power >= 0."""
         if exponent == 0:
             return Ratio(self.ring.one)
         self._spend(_most_terms(base.numerator, exponent) * len(base.numerator))
@@ -132,7 +132,7 @@ class Ratios:
         return Ratio(above if constant > 0 else -above, abs(constant.numerator), below)
 
     def denominator(self, value: Ratio) -> PolyElement:
-        """Return the denominator of a fraction of polynomials as an expanded polynomial."""
+        """Return the denominator of a fraction as a polynomial, multiplied out."""
         below = self.ring.ground_new(self.ring.domain(value.constant))
         for number, power in value.factors:
             below = below * self.factors[number] ** power
@@ -146,7 +146,10 @@ class Ratios:
             )
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return a polynomial as a rational constant times factors; factors that are new are stored."""
+        """Return (constant, factors) of a polynomial as a rational constant times powers of the stored factors.
+
+        Factors that are new are stored with ``source``, the divisor as the formula writes it.
+        """
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
         shared = [min(column) for column in zip(*poly, strict=True)]
@@ -170,14 +173,14 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial with integer coefficients at a fixed point, to test divisibility."""
+        """Return the value of a polynomial with integer coefficients at the point of :meth:`_may_divide`."""
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether a factor can divide a polynomial, judged by the integer values of both at one point.
+        """Return whether factor ``number`` can divide a polynomial whose value at a fixed integer point is ``value``.
 
         The test is fast, unlike a division that fails. Both polynomials have coprime integer coefficients, so by
         Gauss's lemma a quotient has integer coefficients too, and the value of the factor must divide the value of the
@@ -197,7 +200,7 @@ class Ratios:
 
 
 def _most_terms(poly: PolyElement, exponent: int) -> int:
-    """Return an upper bound on the number of terms of a polynomial's power."""
+    """Return an upper bound on the number of terms of ``poly**exponent``, to stop before a product is too long."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
     by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())

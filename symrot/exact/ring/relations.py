@@ -43,25 +43,35 @@ class Rule:
 
 @dataclass(frozen=True)
 class Relations:
-    """The relations of a polynomial ring: rules, highest variable first, or a Groebner basis if necessary."""
+    """The relations between the variables of a polynomial ring.
+
+    They are ``rules``, highest variable first, or a Groebner ``basis`` if rules do not suffice.
+    """
 
     rules: tuple[Rule, ...] = ()
     basis: tuple[PolyElement, ...] = ()
 
     def reduce(self, poly: PolyElement) -> PolyElement:
-        """Return the normal form of a polynomial; it is zero if and only if the relations make the polynomial zero."""
+        """Return the normal form of a polynomial modulo the relations.
+
+        It is 0 if and only if the relations imply that the polynomial is zero.
+        """
         for rule in self.rules:
             poly = (_divide if rule.minimal else _replace)(poly, rule)
         return poly.rem(list(self.basis)) if self.basis and poly else poly
 
     @property
     def contradictory(self) -> bool:
-        """Whether the relations contradict each other, that is, imply 1 = 0."""
+        """Whether the relations contradict each other, that is, imply 1 = 0; then no point satisfies the hypotheses."""
         return any(poly.is_ground for poly in self.basis)
 
 
 def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relations | None:
-    """Return the relations that follow from rules and hypotheses, or None if they need fractional coefficients."""
+    """Return the relations that follow from ``rules`` and ``hypotheses``, polynomials that are zero.
+
+    Return None if the ring has integer coefficients and the relations need fractions; the caller then starts again with
+    rational coefficients.
+    """
     known = _ordered(rules)
     for hypothesis in hypotheses:
         poly = known.reduce(hypothesis)
@@ -83,7 +93,10 @@ def _ordered(rules: Sequence[Rule]) -> Relations:
 
 
 def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
-    """Return ``poly = 0`` as a rule for a variable that has no rule yet, or None if that is impossible."""
+    """Return ``poly = 0`` as a rule ``g^n = ..`` for a variable g that has no rule in ``known``, or None.
+
+    It is possible if ``g^n`` is the leading term and g does not occur in the other terms.
+    """
     lead = poly.leading_expv()
     places = [number for number, power in enumerate(lead) if power]
     if len(places) != 1 or any(rule.generator == places[0] for rule in known.rules):
@@ -98,7 +111,7 @@ def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
 
 
 def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return a polynomial after one use of a rule, which replaces powers >= ``rule.power`` of the rule's variable."""
+    """Return a polynomial in which all powers of g from ``g^n`` on are replaced by the rule ``g^n = ..``."""
     place, power = rule.generator, rule.power
     low: dict[tuple[int, ...], Any] = {}
     high: dict[int, dict[tuple[int, ...], Any]] = {}

@@ -56,7 +56,7 @@ MOST_NESTED_TERMS = 40
 
 
 def as_zero(relation: Any) -> Expr:
-    """Return the expression that a hypothesis makes zero: an expression itself, or left - right of an equation.
+    """Return the expression that a hypothesis says is zero: an expression itself, or left - right of an equation.
 
     Raises
     ------
@@ -150,7 +150,7 @@ class FormulaRing:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
-        """Append a variable to the ring for each pair (key, expression); return a map from key to its index."""
+        """Append a variable to the ring for each pair (key, expression), and return a map from key to its index."""
         numbers = {}
         for key, expression in named:
             numbers[key] = len(self.generators)
@@ -160,7 +160,10 @@ class FormulaRing:
     # -- what occurs ------------------------------------------------------------------------------------------------
 
     def _sums_of_logarithms(self, expressions: Sequence[Expr]) -> dict[Expr, Expr]:
-        """Return, for each logarithm in expressions, the sum of logarithms of irreducible factors that equals it."""
+        """Return, for each logarithm in expressions, an equal sum of logarithms of irreducible factors.
+
+        ``log(a^2*b)`` gives ``2*log(|a|) + log(b)``.
+        """
         logarithms = [node for node in logarithms_in(expressions) if _is_of_real(node)]
         if not logarithms:
             return {}
@@ -177,11 +180,14 @@ class FormulaRing:
         return sums_of_logarithms(products)
 
     def _exponential(self, node: Expr) -> Expr:
-        """Return an exponential without logarithms of products in its exponent: exp(b*log(a^2)) is exp(2*b*log|a|)."""
+        """Return an exponential whose exponent contains no logarithms of products.
+
+        ``exp(b*log(a^2))`` becomes ``exp(2*b*log(|a|))``.
+        """
         return sympy.exp(node.args[0].xreplace(self.logarithms).expand()) if self.logarithms else node
 
     def _collect(self, expressions: Iterable[Expr]) -> None:
-        """Collect the angles, roots and symbols in expressions.
+        """Collect what needs a variable of the ring: angles, roots, exponentials and symbols in expressions.
 
         Constant angles add the square roots that occur in their sines and cosines.
         """
@@ -226,13 +232,19 @@ class FormulaRing:
                 self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
-        """Return a radicand in lowest terms, reduced by those hypotheses that contain no roots."""
+        """Return the factors of ``base``, which is under a root with the given index, in lowest terms.
+
+        Hypotheses that contain no roots are used to shorten it.
+        """
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
         radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other roots of the ring, with their expressions."""
+        """Return those square roots that are products of other roots of the ring, each with its expression by these.
+
+        With the roots of a, b and a b, the last is the product of the others.
+        """
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -240,7 +252,7 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
-        """Return the dependences without circles, in which a root is expressed by itself or through others."""
+        """Return those of the ``dependences`` in which no root is expressed by itself, not even through others."""
         accepted: dict[Root, Dependence] = {}
         for root, dependence in dependences.items():
             stack, seen = _named(dependence), set()
@@ -265,7 +277,7 @@ class FormulaRing:
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
-        """Functions between which unknown relations may hold.
+        """Functions and angles between which relations may hold that the ring does not know, such as unknown functions.
 
         If there are any, a nonzero normal form does not prove that the formula is not zero.
         """
@@ -275,7 +287,10 @@ class FormulaRing:
     # -- the ring and its relations ---------------------------------------------------------------------------------
 
     def _relate(self, domain: Any) -> Relations | None:
-        """Build the polynomial ring; return its relations, or None if they need fractional coefficients."""
+        """Build the polynomial ring over ``domain`` (the integers or the rationals); return its variables' relations.
+
+        Return None if the relations need fractional coefficients and the domain is the integers.
+        """
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
         self.numbers: dict[int, Number] = {}
@@ -312,9 +327,10 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the variables that are algebraic numbers between which unknown relations may hold.
+        """Return the variables that are algebraic numbers, if relations may hold that the ring does not know.
 
-        Square roots of primes have no unknown relations. The result is empty if one of the numbers is imaginary.
+        They are given as a map from index to number. Between square roots of primes there are no further relations; the
+        result is empty then, and also if one of the numbers is imaginary.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -350,14 +366,18 @@ class FormulaRing:
     # -- reading ----------------------------------------------------------------------------------------------------
 
     def ratio(self, expression: Expr) -> Ratio:
-        """Return an expression as a fraction of polynomials; raise ``InputError`` if a divisor is zero everywhere."""
+        """Return an expression as a fraction of polynomials of the ring.
+
+        It is not in lowest terms, so equal expressions may give different fractions. Raise ``InputError`` if a divisor
+        is zero everywhere.
+        """
         known = self._read_already.get(expression)
         if known is None:
             known = self._read_already[expression] = self._read(expression)
         return known
 
     def difference(self, left: Expr, right: Expr) -> Ratio:
-        """Return left - right as a fraction of polynomials."""
+        """Return left - right as a fraction of polynomials; the sides are equal if its numerator reduces to 0."""
         minus_right = self.ratios.multiply([self.ratios.number(-1), self.ratio(right)])
         return self.ratios.add([self.ratio(left), minus_right])
 
@@ -405,7 +425,7 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield the powers of the factors that were extracted from a root: absolute values, nonnegative expressions."""
+        """Yield factor^n for each of the ``factors`` (factor, n) that were taken out of a root: |x| of sqrt(x^2 y)."""
         for factor, times in factors:
             if isinstance(factor, Root):
                 yield self._power(self._root(factor), times, factor.expression)
@@ -421,7 +441,7 @@ class FormulaRing:
         return self.ratios.multiply(factors)
 
     def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
-        """Return the cosine and sine of an angle as polynomials in the cosines and sines of base angles."""
+        """Return (cosine, sine) of an angle as fractions of polynomials in the cosines and sines of base angles."""
         known = self._angles_read.get(argument)
         if known is not None:
             return known
@@ -456,7 +476,7 @@ class FormulaRing:
         return turned
 
     def _turned(self, angle: tuple[Ratio, Ratio], by: tuple[Ratio, Ratio]) -> tuple[Ratio, Ratio]:
-        """Return the cosine and sine of a sum of two angles from the cosine and sine of each."""
+        """Return (cosine, sine) of the sum of two angles, each given as (cosine, sine)."""
         (cosine, sine), (c0, s0) = angle, by
         minus_s0 = self.ratios.multiply([self.ratios.number(-1), s0])
         turn, add = self.ratios.multiply, self.ratios.add
@@ -466,7 +486,10 @@ class FormulaRing:
         )
 
     def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
-        """Yield (cosine, sine) of angles with the sum ``coefficient * atom``, for an inverse function ``atom``."""
+        """Yield (cosine, sine) of angles that add up to ``coefficient * atom``; the atom is an inverse function.
+
+        ``2*asin(u)`` gives the pair of asin(u) twice.
+        """
         for halvings, times in halved(coefficient):
             c, s = map(self.ratio, cosine_sine(atom, halvings))
             if times < 0:
@@ -480,7 +503,7 @@ class FormulaRing:
         return cosine, sine
 
     def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
-        """Return the polynomial in one variable with given integer coefficients, lowest power first."""
+        """Return the polynomial in the variable number ``place`` with the given coefficients, lowest power first."""
         gen = self.ring.gens[place]
         return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
 
@@ -492,14 +515,17 @@ class FormulaRing:
         return constant * above / below
 
     def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
-        """Return (c, P, Q) with value = c*P/Q: a rational c >= 0, and P and Q primitive over the integers."""
+        """Return (c, P, Q) with value = c*P/Q in lowest terms, as expressions; c is a rational number >= 0.
+
+        The coefficients of P, and those of Q, are integers without a common divisor.
+        """
         constant, above, below = self.lowest_polynomials(value)
         return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
-        """Return (c, P, Q) with value = c*P/Q, where P and Q are polynomials of the ring.
+        """Return (c, P, Q) with value = c*P/Q in lowest terms, with P and Q as polynomials of the ring.
 
-        c is a rational number >= 0; see :meth:`lowest_terms`.
+        c is a rational number >= 0; the coefficients of P, and those of Q, are integers without a common divisor.
         """
         numerator = self.reduce(value.numerator)
         if not numerator:
@@ -523,13 +549,19 @@ def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand
 
 
 def _is_of_real(logarithm: Expr) -> bool:
-    """Return whether the argument of a logarithm is a formula of real symbols and functions."""
+    """Return whether the argument of a logarithm contains only real symbols and functions.
+
+    Only then may the logarithm be written as a sum.
+    """
     leaves = logarithm.atoms(sympy.Symbol, AppliedUndef)
     return not logarithm.has(I) and all(leaf.is_extended_real for leaf in leaves)
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots that express a dependent root; an empty list if the root is independent of the others."""
+    """Return the roots in the expression of a dependent root by others.
+
+    The list is empty if ``dependence`` is None, which means that the root is independent.
+    """
     if dependence is None:
         return []
     return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
@@ -540,10 +572,10 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _order(node: Expr) -> tuple[str, str]:
-    """Return a sort key of an expression that is the same in every run."""
+    """Return a sort key of an expression that is the same in every run: its text and its type."""
     return (written(node), type(node).__name__)
 
 
 def _depth(root: Root) -> tuple[int, str, str]:
-    """Return a sort key that puts outer roots before the roots inside them."""
+    """Return a sort key of a root; outer roots come before the roots inside them."""
     return (-root.depth, written(root.expression), written(root.power_expression))

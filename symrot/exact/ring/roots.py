@@ -44,7 +44,10 @@ def written(node: Expr) -> str:
 
 @dataclass(frozen=True)
 class Root:
-    """A root as a variable of the ring: ``expression^index = power_expression``; ``depth`` counts nested roots."""
+    """A root as a variable of the ring, with ``expression^index = power_expression``; sqrt(x + 1) has the index 2.
+
+    ``depth`` counts how many roots are nested in it, itself included. Absolute values are roots too: ``|x|^2 = x^2``.
+    """
 
     expression: Expr
     power_expression: Expr
@@ -91,7 +94,7 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The expressions that must be converted to polynomials of the ring before this root can be."""
+        """The expressions in this power, such as radicands, that must be read before the power itself can be."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
@@ -147,7 +150,10 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 
 
 def absolute(value: Expr) -> Root | Expr:
-    """Return the absolute value of a real expression: itself or its negative if the sign is known, otherwise a root."""
+    """Return the absolute value of a real expression.
+
+    It is ``value`` or ``-value`` if the sign is known, otherwise a root ``|x|``, whose square is ``x^2``.
+    """
     sign = sign_of(value)
     return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
 
@@ -187,7 +193,10 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return the square root of a positive rational as rational * product of square roots of primes."""
+    """Return (rational, roots): the square root of a positive rational number as a product with square roots of primes.
+
+    For 12/5 it is 2/5 and the roots of 3 and 5.
+    """
     powers = factorint(int(value.p) * int(value.q))
     outside = prod(prime ** (power // 2) for prime, power in powers.items())
     primes = sorted(prime for prime, power in powers.items() if power % 2)
@@ -195,7 +204,7 @@ def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:
-    """Return how many fractional powers are nested inside each other, at most, in some expressions."""
+    """Return the depth of nested fractional powers in expressions: 0 without, 2 for sqrt(1 + sqrt(x))."""
     deepest = 0
     for node in expressions:
         below = _nesting(node.args)

@@ -77,7 +77,7 @@ def solution_html(exercise: Exercise, text: Callable[[str], str]) -> str:
 
 
 def mathjax(text: str) -> str:
-    r"""Return Markdown as HTML with formulas between ``\(..\)`` or ``\[..\]``, which MathJax in Moodle displays."""
+    r"""Return Markdown as HTML for Moodle, whose MathJax displays the formulas between ``\(..\)`` or ``\[..\]``."""
     parts = re.split(r"(\$\$.+?\$\$|\$[^$]+\$)", text)
     return "".join(_delimited(escape(part, quote=False)) for part in parts)
 

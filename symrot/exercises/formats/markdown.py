@@ -9,7 +9,7 @@ __all__ = ["data_text", "markdown_sheet"]
 
 
 def data_text(data: Sequence[Datum]) -> str:
-    """Return the given quantities of an exercise, with their values, as one sentence."""
+    r"""Return the given quantities of an exercise as one sentence, such as ``Data: $m = 2\,\mathrm{kg}$ (mass).``"""
     pairs = (f"${each.latex} = {each.value}{unit_latex(each.unit)}$ ({each.words})" for each in data)
     return f"Data: {', '.join(pairs)}." if data else ""
 

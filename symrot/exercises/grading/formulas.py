@@ -197,12 +197,12 @@ def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
 
 
 def _letters(formula: str, question: Question) -> set[str]:
-    """Return the names of symbols of the exercise that occur in a formula."""
+    """Return the names of those symbols of the exercise ``question`` that occur in ``formula``."""
     return {name for name in _NAME.findall(formula) if name in question.symbols}
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:
-    """Return the checker's code for the error, other than the wrong units, in a student's formula.
+    """Return the checker's code for the error, other than wrong units, in the formula ``own``; ``truth`` is right.
 
     The checker stops at wrong units. So the symbols are renamed to names without a conventional unit, and it looks for
     other errors.
@@ -226,7 +226,7 @@ def _holds(own: str, truth: str, question: Question) -> bool:
 
 
 def _exchanged(own: str, truth: str, question: Question) -> bool:
-    """Return whether the student's formula becomes right if two of its symbols are exchanged."""
+    """Return whether the formula ``own`` becomes the right formula ``truth`` if two of its symbols are exchanged."""
     names = sorted({name for name in _NAME.findall(own) + _NAME.findall(truth) if name in question.symbols})
     for place, first in enumerate(names):
         for second in names[place + 1 :]:

@@ -76,7 +76,7 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
 
 
 def _readings(answer: str) -> Iterator[_Number]:
-    """Yield the possible readings of a typed number: a comma may be a decimal point, or may separate thousands."""
+    """Yield the possible readings of a typed number: ``1,234`` may be 1.234 or 1234."""
     text = answer.strip()
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
@@ -95,7 +95,7 @@ def _readings(answer: str) -> Iterator[_Number]:
 def _read(text: str) -> _Number | None:
     """Return the number and unit in a text such as ``0.5 kg m^2``.
 
-    Return None if the text is not a number, or a number followed by a unit.
+    Return None if the text has another form; the unit may be missing.
     """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")

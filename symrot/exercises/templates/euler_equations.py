@@ -28,7 +28,7 @@ def _used(formula: Expr) -> tuple[Quantity, ...]:
 
 
 def _balance(row: int, acceleration: Expr) -> Expr:
-    """Return the torque about axis ``row`` that Euler's equation requires for a given angular acceleration."""
+    """Return the torque about axis ``row`` (0, 1 or 2) that Euler's equation requires for the angular acceleration."""
     inertia = diag(A, B, C)
     return (inertia * Matrix([acceleration if n == row else 0 for n in range(3)]) + OMEGA.cross(inertia * OMEGA))[row]
 

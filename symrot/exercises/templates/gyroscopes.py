@@ -16,7 +16,10 @@ GRAVITY = quantity(g, "9.81", "m/s^2", "gravity")
 
 
 def _gyroscopic_torque(moment: Expr) -> Matrix:
-    """Return the torque on a wheel that spins about x while its axis rotates about z."""
+    """Return the torque vector on a wheel that spins at omega_3 about x while its axis rotates at Omega about z.
+
+    ``moment`` is the wheel's moment of inertia about its own axis.
+    """
     return Matrix((0, 0, Omega)).cross(Matrix((moment * omega_3, 0, 0)))
 
 

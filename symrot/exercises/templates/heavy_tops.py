@@ -44,7 +44,7 @@ def _condition() -> Expr:
 
 
 def _is_possible(values: Mapping[Symbol, Expr]) -> bool:
-    """Return whether a body can have the chosen moments of inertia A and C about its tip.
+    """Return whether a body can have the moments of inertia A and C about its tip that ``values`` gives, by symbol.
 
     By the parallel axis theorem, A is ``m h^2`` plus the moment about the centre of mass, which is at least C/2.
     """

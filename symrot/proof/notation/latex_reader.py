@@ -34,7 +34,10 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Exception raised if LaTeX text contains a name without a meaning, or a notation that is not supported."""
+    """Raised if LaTeX on a page has a name without a declared meaning, or a notation that is not supported.
+
+    The LaTeX is then only a label: nothing is proven about it.
+    """
 
 
 def key(latex: str) -> str:
@@ -157,7 +160,7 @@ class _Interpreter(Cursor):
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Read the length of a vector, such as ``|v|``, after its first bar; return its value."""
+        """Return the length of a vector ``|v|``, optionally with an exponent; its first bar has been read."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:

@@ -85,7 +85,7 @@ SIGNS = {"+": "+", "-": "−"}
 
 
 class _Translation:
-    """The translation of a LaTeX tree into items; the LaTeX of an item is copied from the source."""
+    """The translation of parsed LaTeX into items, the parts of a formula; see :class:`Item`."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex

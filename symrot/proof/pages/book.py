@@ -126,7 +126,7 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 
 
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
-    """Yield (anchor, title, text) for each text on a page that the search of the book can find.
+    """Yield (anchor, title, text) for each text on a page that the search of the book finds.
 
     The anchor is the end of the text's address, such as ``#step-3``, or ``""`` for the top of the page. Titles and
     texts are Markdown.

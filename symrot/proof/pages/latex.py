@@ -145,7 +145,7 @@ def _passage(passage: Passage) -> str:
 
 
 def _display(latex: str) -> str:
-    """Return a displayed formula in LaTeX, broken into lines if it is long."""
+    """Return a LaTeX formula as a display of its own, broken into lines if it is wider than WIDTH letters."""
     lines = ["".join(item.latex for item in line) for line in rows(latex, WIDTH)]
     if len(lines) == 1:
         return f"\\fitted{{{latex}}}"

@@ -52,7 +52,10 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives."""
+    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives.
+
+    Infinity is always correct as an upper bound.
+    """
     return math.inf if math.isnan(bound) else bound
 
 
@@ -252,8 +255,9 @@ class Deviations:
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
 
-        A bound is infinite if a pole may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction
-        of a deviation that a step misses; it is used for square roots near zero, of which a step may miss the whole.
+        Times and states may be complex; ``y`` and ``radii`` hold one number per state. A bound is infinite if a pole
+        may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction of a deviation that a step
+        misses; it is used for square roots near zero, of which a step may miss the whole.
         """
         self.spent += 1
         try:
@@ -328,10 +332,15 @@ def longest_followed(
 ) -> float:
     """Return the length of the longest step, at most h, that is proven not to miss more of a torque than is allowed.
 
-    The method is that of :file:`enclosure.h`.
+    A step misses a part of a torque, such as a short pulse, if its polynomial does not show it. The method is that of
+    :file:`enclosure.h`: the step is shortened until the bound is small enough.
 
     Parameters
     ----------
+    deviations : Deviations
+        Bounds of the rates for the parameters of the motion.
+    t, h : float
+        Start and length of the step, s.
     y : N numbers
         States at t.
     path : N sequences

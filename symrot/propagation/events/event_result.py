@@ -93,6 +93,8 @@ class _Side(NamedTuple):
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
     """Return the samples of a motion at ``times``, and all events between its start and the outermost of the times.
 
+    ``times`` are times of the scene, s, in any order, before or after the start.
+
     Raises
     ------
     InputError
@@ -209,8 +211,8 @@ def _joined(
 ) -> list[tuple[EventZero, Floats]]:
     """Return one list of all zeros of event formulas, from those before the start t0 of a motion and those after it.
 
-    A zero at the start itself is listed once. It is of kind ``"touching"`` if the formula has the same sign before and
-    after the start.
+    Each item is a zero and the states there. A zero at the start itself is listed once. It is of kind ``"touching"`` if
+    the formula has the same sign before and after the start.
     """
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [

@@ -108,7 +108,7 @@ class ZerosNotSeparated(PropagationError):
     def later(self, epoch: float) -> "ZerosNotSeparated":
         """Return the error with its time converted from the clock of the motion to time of the scene.
 
-        The clock shows 0 at the scene time ``epoch``, s.
+        The clock, the time that the stepper counts, shows 0 at the scene time ``epoch``, s.
         """
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros
@@ -235,7 +235,7 @@ def _with_pi(node: Node) -> Node:
 
 
 class _Library:
-    """A loaded library that locates events, built from :func:`event_library_source`."""
+    """A loaded library that locates events, built from :func:`event_library_source`: its C functions and its sizes."""
 
     def __init__(self, path: str) -> None:
         library: Any = ctypes.CDLL(path)
@@ -312,7 +312,10 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at the time t in a piece; 0 if the rounding error exceeds the value."""
+        """Return the sign, 1 or -1, of an event's formula at the time t in a piece; 0 if rounding errors are larger.
+
+        ``event`` is the index of the event.
+        """
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -474,9 +477,9 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the sign of an event's formula just before the end of a piece of the motion.
+    """Return the sign (1 or -1) of the formula of the event with index ``event``, just before the end of a piece.
 
-    The sign is 0 if all values are smaller than their rounding errors.
+    It is 0 if all values there are smaller than their rounding errors.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0

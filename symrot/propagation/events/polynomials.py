@@ -81,7 +81,7 @@ def _nested(terms: int) -> Floats:
 
 @cache
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
-    """Return the Chebyshev points on [-1, 1] and two conversion matrices.
+    """Return the Chebyshev points on [-1, 1], shape (21,), and two conversion matrices, shape (21, 21).
 
     The first matrix converts values at the points to coefficients of Chebyshev polynomials; the second one converts
     these to coefficients of powers.

@@ -92,7 +92,8 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
     """Return the state transition matrix of a scene's motion from one time to another, shape (6, 6).
 
     It maps a small change of (omega_1, omega_2, omega_3, rotation_1, rotation_2, rotation_3) at ``start``, s, to the
-    change at ``stop``; the rotation is about the body axes.
+    change at ``stop``; the rotation is about the body axes. ``stop`` may be before ``start``. InputError is raised if
+    the torques have no derivatives: a table, or formulas that jump or bend.
     """
     _refuse(scene)
     columns = _columns(scene, read_variables(scene, TRANSITION))

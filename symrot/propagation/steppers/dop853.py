@@ -169,7 +169,10 @@ def integration(
 
 
 class _Clocked(Integration):
-    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time."""
+    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time.
+
+    ``clock`` returns the library and the parameters for an epoch.
+    """
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)

@@ -178,8 +178,8 @@ def record(
 ) -> "FallbackRecording":
     """Return the motion over ``span`` as a function from times to states; the arguments are as for :func:`integrate`.
 
-    If the motion stops early or is interrupted, the attribute ``recording`` of the exception holds the motion before
-    that time, unless it stopped at its start.
+    ``span`` is a pair of times, s; the start of the motion is added to it. If the motion stops early or is interrupted,
+    the attribute ``recording`` of the exception holds the motion before that time, unless it stopped at its start.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
@@ -232,7 +232,10 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``."""
+    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``.
+
+    ``solution`` is the interpolant; ``epoch`` is the time, s, on the motion's clock that it calls 0.
+    """
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -286,7 +289,10 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at the times, which all lie after t0 or all before it, sorted by their distance from t0."""
+        """Return the states at the times, shape (n, N).
+
+        The times all lie after t0 or all before it, and are sorted by their distance from t0.
+        """
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0

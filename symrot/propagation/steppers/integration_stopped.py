@@ -34,7 +34,7 @@ class IntegrationStopped(PropagationError):
     def later(self, epoch: float) -> "IntegrationStopped":
         """Return the error with its times converted from the clock of the motion to times of the scene.
 
-        The clock shows 0 at the scene time ``epoch``, s.
+        The clock, the time that the stepper counts, shows 0 at the scene time ``epoch``, s.
         """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples

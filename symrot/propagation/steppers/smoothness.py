@@ -36,5 +36,8 @@ def _of_torque(torque: TorqueStructure) -> str:
 
 
 def non_smooth_torque(plan: Plan) -> str:
-    """Return a sentence that says which torque of a plan is not smooth; an empty text if all torques are smooth."""
+    """Return a sentence that says which torque of a plan is not smooth; an empty text if all torques are smooth.
+
+    A torque is smooth if its Taylor series exists at every point where it is defined.
+    """
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

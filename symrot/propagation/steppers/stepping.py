@@ -155,8 +155,8 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Part of a span, from ``start`` to ``stop``, s, without switching times inside.
 
-    ``first`` and ``last`` are the times passed to the kernel at the two ends. At a switching time they lie just inside
-    the segment.
+    A torque may jump at a switching time. ``first`` and ``last`` are the times passed to the kernel at the two ends. At
+    a switching time they lie just inside the segment, so that the torque has its value inside.
     """
 
     start: float
@@ -228,7 +228,10 @@ class Recording(ABC):
 
     @abstractmethod
     def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``."""
+        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``.
+
+        The shapes are (n,) and (n, N).
+        """
 
     def __call__(self, t: ArrayLike) -> Floats:
         times = np.asarray(t, dtype=np.float64)
@@ -246,8 +249,8 @@ class Recording(ABC):
 class SteppedRecording(Recording):
     """A motion whose states can be computed at any time, from the recorded steps of a stepper in C.
 
-    ``task`` is the integration; ``backward`` and ``forward`` are its recorded steps before and after the start, one per
-    row.
+    ``task`` is the integration, and ``span`` the interval of time, s. ``backward`` and ``forward`` are its recorded
+    steps before and after the start, one per row.
     """
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
@@ -388,7 +391,7 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def cost(run: Run) -> tuple[int, int, int]:
-        """Return the numbers of accepted steps, rejected steps and evaluations of a run."""
+        """Return the numbers of accepted steps, rejected steps and evaluations of a run so far."""
 
     def dense(self, rows: Floats, times: Floats) -> Floats:
         """Return the states, shape (n, N), at n times inside recorded steps, all after t0 or all before it.
@@ -405,7 +408,7 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether the times never decrease; NaN counts as a decrease.
+    """Return whether the times never decrease; NaN counts as a decrease. An empty array counts as sorted.
 
     If there are few times, they are compared one by one, which is faster than NumPy.
     """
@@ -451,7 +454,10 @@ class Integration:
         self.fields: dict[str, int] = {}  # more fields of the run in C, which a method sets
 
     def restarted(self) -> "Integration":
-        """Return a copy of the integration with all counts at zero; its arguments are not checked again."""
+        """Return a copy of the integration with all counts at zero; its arguments are not checked again.
+
+        A copy is needed for each new motion, so that its cost is counted alone.
+        """
         other: Integration = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
@@ -471,7 +477,7 @@ class Integration:
         return other
 
     def stats(self) -> Stats:
-        """Return the total cost of all calls so far."""
+        """Return the total cost of all calls so far, as :class:`Stats` with the time since the integration was made."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
@@ -578,12 +584,18 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the numbers of accepted steps, rejected steps and evaluations, in this and all earlier runs."""
+        """Return the numbers of accepted steps, rejected steps and evaluations, in this and all earlier runs.
+
+        ``run`` is the present run, which has not been added to the counts yet.
+        """
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def record_steps(self, end: float) -> list[Floats]:
-        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step."""
+        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step.
+
+        IntegrationStopped is raised if they take more than 2 GiB.
+        """
         room = self.stepper.rows_per_call
         pieces = [np.empty((0, self.stepper.row))]
         for run in self.runs(end):

@@ -36,7 +36,7 @@ class Instant(NamedTuple):
         return Instant(*normalized(high, low))
 
     def __sub__(self, other: "Instant") -> float:
-        """Return the number of seconds from the instant ``other`` to this instant."""
+        """Return the number of seconds from the instant ``other`` to this instant, as one double."""
         return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:

@@ -46,7 +46,7 @@ class SwitchedPropagator(Propagator):
 
 @final
 class SwitchedMotion(MotionInParts):
-    """Motion under torques with switching functions (sign, abs, ..).
+    """Motion under torques with switching functions (sign, abs, ..), computed part by part between the switches.
 
     In each smooth part, time is counted from the start of the part.
     """
@@ -58,7 +58,10 @@ class SwitchedMotion(MotionInParts):
         self.system.regime(frozenset(), self.system.initial_modes())
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and the cost of the motion."""
+        """Return the states at the times of the scene, shape (n, N), and the cost of the motion with its switches.
+
+        ``in_order`` is not used: the times are sorted in any case.
+        """
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
@@ -104,7 +107,10 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N)."""
+        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+
+        The motion is followed through all switches from its start to both ends of ``span``.
+        """
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
@@ -121,7 +127,10 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from time to states for a motion under torques with switching functions, made of its smooth parts."""
+    """A function from time to states for a motion under torques with switching functions, made of its smooth parts.
+
+    ``chunks`` are the parts; beyond the last one, where a motion stopped early, the states are NaN.
+    """
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

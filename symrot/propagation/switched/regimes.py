@@ -128,7 +128,8 @@ class Regime:
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
         """Return the parameters of the equations for given modes, as functions of the epoch.
 
-        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values.
+        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values. The epoch is the
+        scene time at which the clock of the motion shows 0.
         """
         key = tuple(modes.values())
         if key not in self._parameters:
@@ -215,7 +216,8 @@ class Regime:
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
         """Return the parameters of rates, guards and output quantities, with the scene's constants inserted.
 
-        They are then formulas in the epoch and in the modes (values of the switching functions) alone.
+        Each is a tuple of pairs (name, formula). The formulas then contain only the epoch and the modes (values of the
+        switching functions).
         """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}

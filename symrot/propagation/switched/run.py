@@ -50,7 +50,7 @@ SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
 class Chunk(NamedTuple):
     """Part of a motion from ``start`` to ``stop``, as a function from times to states and as polynomials.
 
-    Its own function and polynomials take the time since the instant ``zero``; the methods take times of the scene.
+    ``own_states`` and ``own_piece`` take the time since the instant ``zero``; the methods take times of the scene.
     """
 
     start: Instant
@@ -99,7 +99,10 @@ class SwitchedRun(RunState):
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known."""
+        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known.
+
+        IntegrationStopped is raised if the motion cannot be followed; the parts before that time have been passed on.
+        """
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -120,14 +123,17 @@ class SwitchedRun(RunState):
 
     @property
     def now(self) -> float:
-        """The present time on the clock of the scene, s."""
+        """The present time of the motion on the clock of the scene, s, rounded to one double."""
         return self.zero.after(self.t).high
 
     def _at(self, t: float) -> Instant:
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``."""
+        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``.
+
+        The attributes ``t`` and ``end``, times on this clock, change too.
+        """
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
@@ -135,7 +141,8 @@ class SwitchedRun(RunState):
     def _check_start(self) -> None:
         """Raise IntegrationStopped if the start allows two motions.
 
-        This is so if the argument of a switching function is zero at the start and may become positive or negative.
+        This is so if the argument of a function such as sign is zero at the start, and if it becomes positive with sign
+        = 1 and negative with sign = -1.
         """
         for switch in self.system.switches:
             mode = switch.mode
@@ -158,8 +165,9 @@ class SwitchedRun(RunState):
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Compute the motion up to its next switch, and return the guard of the function that switches there, or None.
 
-        None means that the motion has reached its end, or that the value of a function such as sign was corrected and
-        the motion has to be computed again from the present time.
+        ``regime`` holds the equations until then, and ``consume`` is called with each part of the motion. None means
+        that the motion has reached its end, or that the value of a function such as sign was corrected and the motion
+        has to be computed again from the present time.
         """
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
@@ -278,7 +286,10 @@ class SwitchedRun(RunState):
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there."""
+        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there.
+
+        The lists of functions that switched at an earlier time are cleared.
+        """
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
@@ -342,7 +353,7 @@ class SwitchedRun(RunState):
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
         """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion.
 
-        It does if the formula of its guard falls from >= 0 to <= 0.
+        It does if the formula of its guard falls from >= 0 to <= 0; it does not if the formula has no value at a point.
         """
         try:
             before, after = (
@@ -359,8 +370,8 @@ class SwitchedRun(RunState):
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
         """Return the time of a switch near t, at which the formula of a guard is zero, as an :class:`Instant`.
 
-        If the formula depends on time alone, one step of Newton's method from t gives the zero to twice the digits of
-        a double. Otherwise t itself is returned.
+        A guard is a formula at whose zero a function such as sign switches. If the formula depends on time alone, one
+        step of Newton's method from t gives the zero to twice the digits of a double. Otherwise t itself is returned.
         """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
@@ -384,8 +395,9 @@ class SwitchedRun(RunState):
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
         """Return the time of a switch, moved past the zero of its guard; the guard must be a formula of time alone.
 
-        The result is the first of a few instants at which the formula is not positive. At an earlier instant, the
-        function (sign, floor, ..) would switch back at once.
+        A guard is a formula at whose zero a function such as sign switches. The result is the first of a few instants
+        at which the formula is not positive. At an earlier instant, the function would switch back at once. If the
+        formula is positive at all of them, ``instant`` is returned.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -427,7 +439,9 @@ class SwitchedRun(RunState):
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
         """Set each function such as sign(x) to its value at zero if x stays at zero; return whether a value changed.
 
-        A sign that was set to 0 in this way gets the sign of x as soon as x is not zero.
+        Whether x stays at zero is seen at the start and the end of ``piece``, the next part of the motion, whose states
+        the function ``states`` computes. A sign that was set to 0 in this way gets the sign of x as soon as x is not
+        zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -474,7 +488,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return the values of all names in the arguments of switching functions, at ``place`` = (time, states)."""
+        """Return the values, by name, of all names in switching functions' arguments, at ``place`` = (time, states)."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -483,10 +497,10 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Switch a function (sign, floor, ..) whose guard has become zero: change its mode, the value in the formulas.
+        """Switch the function (sign, floor, ..) whose guard has become zero: change its mode, its value in formulas.
 
         If the rates before and after the change both drive the argument of a sign back to zero, it is held at zero: the
-        motion slides.
+        motion slides. IntegrationStopped is raised if the motion cannot go on in exactly one way.
         """
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
@@ -547,7 +561,8 @@ class SwitchedRun(RunState):
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
         """Return the values of all switching functions and the set of held ones, for comparison with earlier states.
 
-        If a name is given, the state is the one after ``flip`` has changed its sign, or after ``hold`` becomes held.
+        A function such as sign is held while its argument stays at zero. If a name is given, the state is the one after
+        ``flip`` has changed its sign, or after ``hold`` becomes held.
         """
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
@@ -563,17 +578,24 @@ class SwitchedRun(RunState):
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas."""
+        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas.
+
+        For abs(x + sign(y)) they are x and the name of the mode that replaces sign(y).
+        """
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``."""
+        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``.
+
+        An example is the sign in ``where(omega_1 > 0, sign(omega_2), 0)`` while omega_1 < 0.
+        """
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
         """Compute a switching function such as sign(x) again, as the branch of ``where`` that contains it is used now.
 
-        While the branch was unused, nobody watched whether x changed its sign.
+        ``mode`` names the number that replaces the function in the formulas. While the branch was unused, nobody
+        watched whether x changed its sign. If x has no value now, the number is left as it is.
         """
         try:
             guard = self._guard_value(mode)

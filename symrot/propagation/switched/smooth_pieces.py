@@ -73,7 +73,7 @@ class SteppedPieces:
                 room = min(2 * room, integration.stepper.rows_per_call)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return the numbers of steps accepted, steps rejected and evaluations so far."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
         integration = self.integration
         return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
@@ -157,7 +157,7 @@ class SciPyPieces:
             raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return the numbers of steps accepted, steps rejected and evaluations so far."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
         return self.counts
 
 

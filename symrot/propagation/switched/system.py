@@ -42,7 +42,10 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions of all torques, with the names that their modes have among the plan's constants."""
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its mode.
+
+        The mode is the number that replaces the function in the formulas; its name is that among the plan's constants.
+        """
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -84,8 +87,9 @@ class SwitchedSystem:
         """Return whether a motion along a switching surface, where the argument x of sign(x) stays zero, needs sign(0).
 
         It does if another function jumps on the same surface, or if a torque is not linear in sign(x). Otherwise the
-        mean of +1 and -1 that keeps x at zero determines the motion. ``mode`` is the name of the number that replaces
-        sign(x) in the formulas.
+        mean of +1 and -1 that keeps x at zero determines the motion. Functions that take the value of one side at zero,
+        such as abs(x) and step(x), never need it. ``mode`` is the name of the number that replaces sign(x) in the
+        formulas.
         """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             return False
@@ -112,7 +116,8 @@ class SwitchedSystem:
     def initial_modes(self) -> Modes:
         """Return the values of all switching functions (sign, floor, ..) at the start of the motion, by mode name.
 
-        If the argument of a sign is zero at the start, the sign counts as 1 until the motion determines it.
+        A mode is the number that replaces the function in the formulas. If the argument of a sign is zero at the start,
+        the sign counts as 1 until the motion determines it.
         """
         return dict(self._initial_modes[0])
 
@@ -237,7 +242,7 @@ def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
 
 
 def is_continuous(switch: Switch) -> bool:
-    """Return whether a switching function is continuous where it switches, as abs is."""
+    """Return whether a switching function is continuous where it switches, as abs, max, min and clip are."""
     return switch.label.startswith(CONTINUOUS)
 
 
@@ -254,10 +259,11 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
 
-    ``modes`` holds the values; a function that has no effect for these values is left out. ``held`` contains the
-    functions whose arguments stay at zero: their values are unknowns, in which the formulas become linear. ``tied``
-    maps a function that switches together with a held one to (held function, 1 or -1): it is replaced by the held
-    function, or by its negative.
+    A branch is u or v in ``where(condition, u, v)``. ``modes`` holds the values; a function that has no effect for
+    these values is left out. ``held`` contains the functions whose arguments stay at zero: their values are unknowns,
+    in which the formulas become linear. ``tied`` maps a function that switches together with a held one to (held
+    function, 1 or -1): it is replaced by the held function, or by its negative. A torque without formulas is returned
+    unchanged.
     """
     if not isinstance(torque, FormulaTorque):
         return torque

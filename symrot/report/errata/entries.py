@@ -17,7 +17,11 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Check the claims of some textbooks and return the verdicts, with corrections of the claims that do not hold."""
+    """Check the claims (printed formulas) of textbooks and courses; return (document, findings) for each of ``names``.
+
+    A finding has the verdict on one claim. ``repair`` says whether to search for corrections of claims that do not
+    hold; ``progress`` is called with lines of text.
+    """
     documents = []
     for name in names:
         source = document(name)
@@ -27,7 +31,10 @@ def survey(
 
 @dataclass(frozen=True)
 class Correction:
-    """A faulty formula of a document: its place, its LaTeX as printed, and its corrected LaTeX (empty if unknown)."""
+    """A faulty formula of a document: its place, its LaTeX as printed, and its corrected LaTeX.
+
+    The corrected LaTeX is empty if no correction is known.
+    """
 
     where: str
     printed: str
@@ -58,7 +65,7 @@ class Entry:
 
 
 def entries(findings_of_document: Sequence[Finding]) -> list[Entry]:
-    """Return one entry for each error of a document.
+    """Return one entry for each error of a document; the argument holds the findings about its claims.
 
     Most entries are errata that a person wrote, each about one or several faulty formulas. A faulty formula that no
     erratum describes gets its own entry, with the reason that the checker gives.
@@ -96,7 +103,10 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 
 
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
-    """Return a faulty formula as printed and as corrected, with the difference in boxes."""
+    """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around what differs.
+
+    ``item`` is the finding about it, ``formula`` its LaTeX with holes for the parts that the checker read.
+    """
     where = item.claim["where"]
     if not item.parts:
         digits = {"printed": item.claim["printed_value"]}
@@ -121,7 +131,10 @@ def _with_text(template: str, texts: Mapping[str, str]) -> str:
 
 
 def _proof(item: Finding, letters: Mapping[str, str]) -> str:
-    """Return one or two sentences that say how a formula was proven wrong."""
+    """Return one or two sentences that say how the formula of a finding was proven wrong.
+
+    ``letters`` maps the checker's names of quantities to the LaTeX of the document's letters.
+    """
     against = item.claim["against"]
     example = _example(item, letters)
     if not item.parts:
@@ -137,7 +150,10 @@ def _proof(item: Finding, letters: Mapping[str, str]) -> str:
 
 
 def _example(item: Finding, letters: Mapping[str, str]) -> str:
-    """Return the end of a sentence that gives a point at which two formulas differ, and both values there."""
+    """Return the end of a sentence: a point at which the formula and its reference differ, and both values there.
+
+    The text is empty if the checker gave no such point. ``letters`` is as for :func:`_proof`.
+    """
     witness = item.verdict.counterexample
     if witness is None:
         return ""

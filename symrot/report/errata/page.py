@@ -30,19 +30,22 @@ NO_CORRECTION = "No correction near the printed formula is known here."
 
 
 class Block(NamedTuple):
-    """A block of the page: its kind, such as ``"title"`` or ``"item"``, and its text as Markdown or LaTeX."""
+    """A block of the page of errata: its kind, such as ``"title"`` or ``"item"``, and its text as Markdown or LaTeX."""
 
     kind: str
     text: str
 
 
 def page(survey: Survey) -> str:
-    """Return the text of ``errata.md``."""
+    """Return the text of ``errata.md``, the page of errata;
+
+    ``survey`` is from :func:`symrot.report.errata.entries.survey`.
+    """
     return "\n\n".join(MARKDOWN[block.kind](block.text) for block in _blocks(survey)) + "\n"
 
 
 def html(survey: Survey) -> str:
-    """Return the text of ``errata.html``, a document that needs no script and no network."""
+    """Return the text of ``errata.html``, the page of errata as a document that needs no script and no network."""
     return document(TITLE, [HTML[block.kind](block.text) for block in _blocks(survey)], STYLE)
 
 
@@ -86,9 +89,10 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
 
 
 def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page that list formulas of a document which hold only under an unstated condition.
+    """Yield the blocks of the page about formulas that hold only under a condition which the document does not state.
 
-    The name of a formula is the id of its claim without the document's name: ``chen-velocity-2d`` -> "velocity 2d".
+    ``items`` are the findings about these formulas. The name of a formula is the id of its claim without the document's
+    name: ``chen-velocity-2d`` -> "velocity 2d".
     """
     if not items:
         return
@@ -107,9 +111,10 @@ def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Blo
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page that list formulas which may be right in the document itself.
+    """Yield the blocks of the page about formulas that do not hold as extracted, but may be right in the document.
 
-    Their faults may come from characters that were lost when the text was extracted from its PDF file.
+    ``items`` are the findings about them. Their faults may come from characters that were lost when the text was
+    extracted from its PDF file.
     """
     if not items:
         return

@@ -26,14 +26,17 @@ COUNTED = {
 
 
 def total(items: Sequence[Finding]) -> str:
-    """Return the sentence that says how many claims of a document hold, fail, or hold under a condition."""
+    """Return a sentence that counts the findings about a document: ``12 claims: 10 hold, 2 do not hold.``"""
     counts = Counter(finding.outcome for finding in items)
     listed = ", ".join(f"{counts[name]} {words[counts[name] > 1]}" for name, words in COUNTED.items() if counts[name])
     return f"{len(items)} claims: {listed}."
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the findings as lines of text: one line per claim, more if the claim is not true, and a summary."""
+    """Return the lines of a table: one line per claim, more if the claim is not true, and a count for each document.
+
+    ``survey`` is the result of :func:`symrot.report.errata.entries.survey`.
+    """
     text: list[str] = []
     for source, items in survey:
         text += [f"{source.title} [{source.name}]", ""]
@@ -58,7 +61,7 @@ def _details(item: Finding) -> list[tuple[str, str]]:
 
 
 def facts(survey: Survey) -> list[dict[str, Any]]:
-    """Return the findings about claims as data for JSON."""
+    """Return the findings as data for JSON, one entry per claim: verdict, place, printed formula, right formula, .."""
     return [
         {
             "document": source.name,

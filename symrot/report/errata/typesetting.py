@@ -65,7 +65,10 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return two sums with marks on the terms that only one of them has; or two products, with marks on factors."""
+    """Return two sums with marks on the terms that only one of them has; or two products, with marks on factors.
+
+    LaTeX shows a mark as a box. ``old`` is the formula as printed, ``new`` the corrected one.
+    """
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
     befores, afters = list(old.args), list(new.args)
     if len(only_old) == len(only_new):
@@ -82,7 +85,7 @@ def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
 
 
 def _places_of_others(node: Node, other: Node) -> list[int]:
-    """Return the indices of those terms or factors of a formula that do not occur in the other sum or product."""
+    """Return the indices of the terms or factors of ``node`` that ``other``, a sum or product too, does not have."""
     remaining = Counter(other.args)
     places = []
     for place, member in enumerate(node.args):
@@ -94,7 +97,7 @@ def _places_of_others(node: Node, other: Node) -> list[int]:
 
 
 def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
-    """Return the LaTeX of a formula.
+    """Return the LaTeX of a formula, in which marks become boxes.
 
     ``letters`` maps names to the LaTeX of the document's letters; ``functions`` are the names that depend on time.
     """
@@ -102,7 +105,10 @@ def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str
 
 
 def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str], functions: Collection[str]) -> str:
-    """Replace each ``@name@`` in a LaTeX template by the LaTeX of the formula ``parts[name]``."""
+    """Replace each hole ``@name@`` in a LaTeX template by the LaTeX of the formula ``parts[name]``.
+
+    ``letters`` and ``functions`` are as for :func:`latex`.
+    """
     return HOLE.sub(lambda hole: latex(parts[hole[1]], letters, functions), template)
 
 
@@ -146,7 +152,10 @@ class _Typesetter(Writer):
         return written.strip()
 
     def product(self, node: Node) -> str:
-        """Return a product as LaTeX: one fraction per divisor, with the factors before it above; then all others."""
+        r"""Return a product as LaTeX, each divisor as a fraction with the factors before it above:
+
+        ``a/b*c`` -> ``\frac{a}{b} c``.
+        """
         pieces: list[str] = []
         above: list[Node] = []
         for factor in node.args:
@@ -161,7 +170,10 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return factors side by side as LaTeX; ``alone`` says that the product has no other factors or fractions."""
+        """Return factors side by side as LaTeX; ``alone`` is true if the product has no other factors or fractions.
+
+        Then a single factor needs no brackets.
+        """
         alone = alone and len(factors) == 1
         written = ""
         after_function = False

@@ -37,7 +37,7 @@ SECTIONS = (
 
 
 def step_data(path: Path) -> Data | None:
-    """Return the content of a file if it is the certificate of a step, else None."""
+    """Return the content of a JSON file if it is the certificate of a time step; None for any other file."""
     try:
         data = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
@@ -106,7 +106,11 @@ def audit_step(
 
 
 def _files(path: Path, name: str, data: Data) -> dict[str, str]:
-    """Return a map from the name of each file of a step to its text, after comparing its hash with the certificate."""
+    """Return a map from the name of each file of a step to its text; each hash is compared with the certificate first.
+
+    ``data`` is the content of the certificate at ``path``, ``name`` the step. CertificateError is raised for a changed
+    file.
+    """
     expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
     parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
     expected |= {parameters_file(name)} if parameters else set()
@@ -142,9 +146,10 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare a certificate with the one that symrot makes for the same shipped scene; return a sentence for the user.
+    """Compare a step's certificate with the one that symrot makes for the same shipped scene; return a sentence.
 
-    If the certificate names no shipped scene, the sentence says that nothing was compared.
+    The sentence says that they agree, or that nothing was compared, because the certificate names no shipped scene.
+    CertificateError is raised if they differ.
     """
     options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
     match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
@@ -166,7 +171,10 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
-    """Compute the bounds of a certificate again; return a sentence that says that they agree."""
+    """Compute the error bounds of a step's certificate again; return a sentence that says that they agree.
+
+    ``source`` is the C text; ``rerun`` says whether to search for the bounds of rounding errors again.
+    """
     name, rates = data["kernel"], rates_of(data)
     try:
         section = data["bounds"]["rounding"]

@@ -66,7 +66,10 @@ def certify_step(
 
 
 def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
-    """Return the section ``bounds`` of a step's certificate, computed from the rates that the certificate states."""
+    """Return the section ``bounds`` of a step's certificate: bounds of rounding and truncation on the box ``ranges``.
+
+    ``data`` is the rest of the certificate, which states the rates ``dy/dt`` of the motion.
+    """
     rates, name = rates_of(data), f"symrot_{step.name}"
     operations = replace(read_kernel(step.c()[0], name, f"{step.name}.c"), name=step.name)
     inputs = replace(step.rates.inputs, arguments=step_signature(rates, step.name).arguments)
@@ -83,12 +86,12 @@ def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
 
 
 def proofs(data: Data) -> tuple[str, ...]:
-    """Return the kinds of proof in the certificate of a step."""
+    """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``."""
     return ("C text", "rounding", "truncation") if "bounds" in data else ("C text",)
 
 
 def lines(data: Data) -> list[str]:
-    """Return lines of text about the certificate of a step."""
+    """Return the lines that `symrot certify SCENE --step METHOD` prints about the step's certificate."""
     rows = [("method", data["method"])]
     for name, function in data["formula"].items():
         count = sum(function["operations"].values())
@@ -121,7 +124,7 @@ def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[
 
 
 def _up(value: float) -> str:
-    """Return a positive number, rounded up to two significant digits, as text."""
+    """Return a positive number as text, rounded up to two significant digits: 0.00121 -> ``1.3e-03``."""
     text = f"{value:.1e}"
     if Fraction(text) >= Fraction(value):
         return text

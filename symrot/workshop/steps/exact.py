@@ -63,7 +63,7 @@ def _form(scene: Scene) -> _Form:
 
 
 def _rounded(value: Fraction) -> Fraction:
-    """Return the double nearest to a number, as the C function receives it."""
+    """Return the double nearest to a number as a fraction, because the C function receives doubles."""
     return Fraction(float(value))
 
 
@@ -259,7 +259,7 @@ class ExactStepText(KernelText):
 
     @cached_property
     def _vectors(self) -> list[tuple[list[float], float, list[float]]]:
-        """Test vectors: (state, size, state after the step), from the motion with exact constants."""
+        """Test vectors (state, dt, state after the step), computed from the closed form with exact constants."""
         vectors = []
         start = [float(x) for x in (*self.scene.initial.omega_b, *self.scene.initial.quaternion)]
         for place, share in enumerate(SHARES):
@@ -275,7 +275,7 @@ class ExactStepText(KernelText):
 
     @cached_property
     def _test(self) -> str:
-        """The C text of a program that compares the functions with the test vectors; it returns 0 if all agree."""
+        """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
 
         def table(declared: str, values: Any) -> str:
             rows = ", ".join(
