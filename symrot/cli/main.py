@@ -457,7 +457,7 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "claim", metavar="CLAIM", nargs="?", help="'left = right' as typed text, SymPy's text or LaTeX, or a FILE.toml"
+        "claim", metavar="CLAIM", nargs="?", help="'left = right' as typed text, SymPy syntax or LaTeX, or a FILE.toml"
     )
     from symrot.checker.language import help_text
 

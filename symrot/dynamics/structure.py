@@ -67,7 +67,7 @@ class InertiaTensor(NamedTuple):
 
 
 class TorqueSwitch(NamedTuple):
-    """A function in a torque's formulas that jumps or has a kink, such as sign or abs; its formulas are texts.
+    """A function in a torque's formulas that jumps (such as sign) or has a kink (such as abs); formulas are texts.
 
     The fields are explained in :class:`symrot.formula.switches.Switch`.
     """
@@ -229,7 +229,10 @@ class Structure:
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON; two structures are equal if and only if their data are equal."""
+        """Return the structure as data for JSON; two structures are equal if and only if their data are equal.
+
+        The cache finds the compiled kernel of a plan by these data.
+        """
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

@@ -218,9 +218,10 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values, by name, of all names that the formulas of an ``expression`` torque may contain.
+    """Return the values, as expressions, of all names that the formulas of an ``expression`` torque may contain.
 
-    The names are those of the time, angular velocity, attitude and so on, and of the torque's own parameters and modes.
+    The names are t, omega_1 to omega_3, q0 to q3 if the attitude is computed, and the torque's own parameters and
+    modes. (A mode is a symbol for the present value of a function that jumps, such as sign.)
     """
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
@@ -245,9 +246,10 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the value of a torque's field as symbols or exact numbers: a scalar, a vector or a quaternion.
+    """Return the value of the torque's field ``name`` as symbols or exact numbers: a scalar, a vector or a quaternion.
 
-    The components of a vector are numbered from 1, the components of a quaternion from 0.
+    ``pattern`` says which components are 0, 1, -1 or free; a free one becomes a symbol. The components of a vector are
+    numbered from 1, those of a quaternion from 0: the field ``c`` gives ``c_1``, ``c_2``, ``c_3``.
     """
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)

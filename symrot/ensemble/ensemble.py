@@ -152,7 +152,7 @@ class Ensemble(MotionSamples):
         return len(self.omega)
 
     def __getitem__(self, k: int) -> EnsembleMember:
-        """Return motion k; negative numbers count from the end."""
+        """Return motion k, from 0, as an :class:`EnsembleMember`; negative numbers count from the end."""
         return EnsembleMember(self, range(len(self))[index(k)])
 
     def __iter__(self) -> Iterator[EnsembleMember]:

@@ -270,7 +270,7 @@ class _Part(NamedTuple):
 
     @property
     def start(self) -> Floats:
-        """The initial quaternions, each component as two doubles (hi, lo), shape (n, 8), or (8,) if all are equal."""
+        """The initial quaternions, each component as two doubles (hi, lo): shape (n, 8), or (8,) if all are equal."""
         variation, attitudes = self.variation, self.variation.attitudes
         if attitudes is None:
             own = variation.cached("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
@@ -286,7 +286,10 @@ class _Part(NamedTuple):
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across and about the symmetry axis, each as :meth:`constant` returns it."""
+        """Return the moments of inertia across the symmetry axis and about it, kg m^2.
+
+        Each is one Fraction, or an array with one value per trajectory if it varies.
+        """
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 

@@ -182,9 +182,9 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """The legs of all motions (the parts before and after t0), and their sample times sorted by distance from t0.
+    """The legs of all motions (the parts after t0 and before t0), and the sample times of each leg.
 
-    ``table`` holds the sorted times, row after row. See ``symrot_job`` in lanes.c.
+    The times are sorted by their distance from t0; ``table`` holds them, row after row. See ``symrot_job`` in lanes.c.
     """
 
     table: Floats

@@ -78,7 +78,7 @@ class Problem(NamedTuple):
         return self._replace(variation=variation, plan=variation.plan(), times=times)
 
     def times_of(self, i: int) -> Floats:
-        """Return the sample times of motion i, s, shape (m,)."""
+        """Return the sample times of motion i, s, shape (m,), whether all motions share them or not."""
         times: Floats = self.times if self.times.ndim == 1 else self.times[i]
         return times
 
@@ -335,9 +335,10 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Compute motions under torques given by formulas, one after the other, and return their outcome.
+    """Integrate motions under torques given by formulas, one after the other, and return their outcome.
 
     Their steps are limited by bounds of the rates or need a check; the stepper in SIMD lanes supports neither.
+    ``stepped`` holds the trajectories.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)

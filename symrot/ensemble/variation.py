@@ -141,7 +141,7 @@ class Variation:
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return the constant with this name in the plan: a Fraction if it does not vary, otherwise an array (n,)."""
+        """Return the constant ``name`` of the plan, such as ``weight``: a Fraction, or an array (n,) if it varies."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -206,10 +206,9 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan that is valid for all trajectories.
+        """Return a plan (the choice of equations and states) that is valid for all trajectories.
 
-        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every
-        trajectory.
+        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every trajectory.
         """
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):

@@ -49,7 +49,7 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that a polynomial of the ring is zero, such as the numerator of left - right.
+    """Prove that the polynomial ``numerator`` of the ring, such as the numerator of left - right, is zero.
 
     Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
     relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
@@ -184,9 +184,10 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` under conditions, if ``y cos w = x sin w`` is proven; otherwise None.
+    """Return a proof that ``atan2(y, x) = w`` wherever r = x cos w + y sin w is positive; None if there is none.
 
-    The value is w where r = x cos w + y sin w is positive, since then y = r sin w and x = r cos w.
+    ``leaf`` is the call of atan2 and ``angle`` is w. The proof requires ``y cos w = x sin w``; then y = r sin w and x =
+    r cos w.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)

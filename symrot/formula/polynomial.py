@@ -105,9 +105,9 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative with respect to a coordinate.
+        """Return the partial derivative by the coordinate or angle ``name``.
 
-        If the coordinate is an angle, the generators that represent its cosine and sine are differentiated too.
+        If it is an angle, the generators that represent its cosine and sine are differentiated too.
         """
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
@@ -180,9 +180,9 @@ def sine(angle: str) -> Polynomial:
 
 
 def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
-    """Return the polynomial in which ``cos^2`` of the angles is replaced by ``1 - sin^2``.
+    """Return an equal polynomial in which ``cos^2`` of each of the ``angles`` is replaced by ``1 - sin^2``.
 
-    In the result no cosine has a power above 1.
+    In the result no cosine has a power above 1, so that equal formulas give equal polynomials.
     """
     for angle in angles:
         reduced = constant(0)
@@ -210,7 +210,7 @@ def _term_quotient(term: Term, divisor: Term) -> Polynomial | None:
 
 
 def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | None:
-    """Return the quotient of two polynomials, computed by long division, or None if it is not a polynomial."""
+    """Return ``dividend/divisor`` by long division, or None if the quotient is not a polynomial."""
     order = _exponents(sorted({name for monomial in (*dividend.terms, *divisor.terms) for name, _ in monomial}))
     highest = max(divisor.terms.items(), key=order)
     quotient, rest = constant(0), dividend

@@ -106,9 +106,10 @@ class Program:
         number: Callable[[Fraction], Any] = float,
         only: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return the values of the outputs, by name, for the values of the inputs, by name.
+        """Return the values of the outputs, by name, for the ``values`` of the inputs, by name.
 
-        Values are floats, arrays or Fractions (with ``number=Fraction``). If ``only`` is given, only these outputs and
+        Values are floats, arrays or Fractions (with ``number=Fraction``). ``functions`` gives the functions such as sin
+        for this kind of number, and ``number`` converts constants to it. If ``only`` is given, only these outputs and
         the temporaries that they need are computed.
         """
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]

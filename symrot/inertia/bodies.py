@@ -37,7 +37,7 @@ class MassProperties(NamedTuple):
     inertia: Tensor
 
     def inertia_about(self, point: Any) -> Tensor:
-        """Return the inertia tensor about a point (m), by the parallel axis theorem."""
+        """Return the inertia tensor, kg m^2, of the body about a point (m), by the parallel axis theorem."""
         offset = [p - c for p, c in zip(tensor.vector(point), self.center_of_mass, strict=True)]
         return tensor.about_point(self.inertia, self.mass, offset)
 

@@ -48,7 +48,7 @@ class Coordinate(NamedTuple):
 
     @property
     def angle(self) -> bool:
-        """Whether the coordinate is an angle; the map uses angles only inside ``cos`` and ``sin``."""
+        """Whether the coordinate is an angle: it has pi in its limits, and occurs only inside ``cos`` and ``sin``."""
         return "pi" in self.upper
 
 

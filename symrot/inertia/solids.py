@@ -159,7 +159,7 @@ class Solid:
         return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in integrals)
 
     def inertia_about(self, point: Any) -> ImmutableMatrix:
-        """Return the inertia tensor about a point (m, axes of the shape), by the parallel axis theorem, kg m^2."""
+        """Return the inertia tensor, kg m^2, about a point (m, axes of the shape), by the parallel axis theorem."""
         offset = [_scalar(p) - c for p, c in zip(tensor.vector(point), self.center_of_mass, strict=True)]
         return _tidied(tensor.about_point(self.inertia, self.mass, offset))
 
@@ -462,7 +462,10 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
 
 
 def closed_forms_text() -> str:
-    """Return the text of ``closed_forms.toml``: formulas of all uniform shapes, in the dimensions and the mass m."""
+    """Return the text of ``closed_forms.toml``: formulas of all uniform shapes, in the dimensions and the mass m.
+
+    :mod:`symrot.inertia.closed_forms` evaluates them without SymPy.
+    """
     lines = [
         "# Uniform bodies: measure (m^3, m^2, m), centre of mass (m), inertia about it (kg m^2), axes of the shape.",
         "# m is the mass (kg), lengths in m. Printed by `python -m symrot.inertia.solids`; do not edit.",

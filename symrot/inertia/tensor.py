@@ -28,7 +28,7 @@ def _items(source: Any) -> tuple[Any, ...]:
 
 
 def matrix(source: Any) -> Tensor:
-    """Return a 3x3 tensor as nested tuples; raise ``ValueError`` if it is not 3x3."""
+    """Return a 3 x 3 tensor, given as a matrix or rows, as nested tuples; raise ``ValueError`` if it is not 3 x 3."""
     rows = tuple(map(vector, _items(source)))
     if len(rows) != 3:
         raise ValueError(f"expected a 3x3 tensor, got {len(rows)} rows")
@@ -36,7 +36,7 @@ def matrix(source: Any) -> Tensor:
 
 
 def vector(source: Any) -> Vector:
-    """Return a vector, row or column as a tuple; raise ``ValueError`` unless it has three components."""
+    """Return three components, given as a list, a row or a column, as a tuple; another number raises ``ValueError``."""
     components = _items(source)
     if len(components) == 1:
         components = _items(components[0])
@@ -52,12 +52,12 @@ def _entrywise(operation: Callable[..., Any], *tensors: Any) -> Tensor:
 
 
 def add(left: Any, right: Any) -> Tensor:
-    """Return the sum of two tensors."""
+    """Return the sum of two tensors, each three rows of three numbers of any type."""
     return _entrywise(lambda a, b: a + b, left, right)
 
 
 def subtract(left: Any, right: Any) -> Tensor:
-    """Return the difference of two tensors."""
+    """Return the difference left - right of two tensors, each three rows of three numbers of any type."""
     return _entrywise(lambda a, b: a - b, left, right)
 
 
@@ -67,7 +67,7 @@ def scale(factor: Any, tensor: Any) -> Tensor:
 
 
 def transpose(tensor: Any) -> Tensor:
-    """Return the transpose of a tensor."""
+    """Return the transpose of a tensor, as three rows of three numbers."""
     return matrix(list(zip(*matrix(tensor), strict=True)))
 
 

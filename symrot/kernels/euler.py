@@ -53,9 +53,10 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return a box of Euler angles away from gimbal lock.
+    """Return a box (angle -> range of values) of Euler angles away from gimbal lock, where rates are bounded.
 
-    The middle angle differs by at most about 1.5 rad from its best value, pi/2 or 0.
+    The middle angle differs by at most about 1.5 rad from its best value: pi/2 if the first and the last axis are
+    equal, as in ZXZ, otherwise 0.
     """
     axes, _ = parse_sequence(sequence)
     proper = axes[0] == axes[2]
@@ -171,7 +172,10 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return the formula that reduces an angle between -2 pi and 2 pi to the range [-pi, pi]."""
+    """Return the formula that adds a multiple of 2 pi to ``angle`` so that it lies in [-pi, pi].
+
+    The angle must lie between -2 pi and 2 pi.
+    """
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

@@ -23,7 +23,7 @@ _CALLED = {"rodrigues": "classical Rodrigues parameters", "mrp": "modified Rodri
 def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
     """Yield (name, function) for every kernel of Rodrigues parameters.
 
-    The function derives its arguments and formulas.
+    The function derives the arguments and formulas of the kernel.
     """
     for which in (CLASSICAL, MODIFIED):
         for suffix, make in _KINDS.items():

@@ -365,5 +365,8 @@ class Chart:
 
     @property
     def singular_set(self) -> SingularSet:
-        """The parameters at which the rate matrix has no inverse; they are the same in both frames."""
+        """The values of the parameters at which the rate matrix has no inverse; they are the same in both frames.
+
+        For example, the middle angles at gimbal lock.
+        """
         return self.rate_matrix("body").singular_set

@@ -160,7 +160,10 @@ def canonical(q: Any) -> Array:
 
 
 def multiply(p: Any, q: Any) -> Array:
-    """Return the Hamilton products ``p q``, shape (..., 4), broadcast together."""
+    """Return the Hamilton products ``p q`` of two arrays of quaternions, shape (..., 4), broadcast together.
+
+    As a rotation, q acts first.
+    """
     p, q = np.broadcast_arrays(array_of(p, 4, what="a quaternion"), array_of(q, 4, what="a quaternion"))
 
     def product(p0: Array, p1: Array, p2: Array, p3: Array, q0: Array, q1: Array, q2: Array, q3: Array) -> Components:
@@ -515,9 +518,9 @@ def _sum(x: Array, y: Array, odd: Mask) -> Array:
 
 
 def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
-    """Return the matrices ``dcm_sb``, shape (..., 3, 3), of Euler angles; see :func:`euler_to_quaternion`.
+    """Return the matrices ``dcm_sb``, shape (..., 3, 3), of Euler angles in order of application.
 
-    ``sequence`` and ``degrees`` are as there.
+    ``sequence`` and ``degrees`` are as for :func:`euler_to_quaternion`.
     """
     return quaternion_to_dcm(euler_to_quaternion(angles, sequence, degrees))
 

@@ -106,7 +106,7 @@ class SingularityDossier:
         return self.jacobian_b.limits
 
     def text(self) -> str:
-        """Return the dossier as text; the same sequence always gives the same bytes."""
+        """Return all entries of the dossier as text; the same sequence always gives the same bytes."""
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [

@@ -348,7 +348,7 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the Euler angles of a dcm, shape (3, 1), rad, in order of application, in the range of ``atan2``.
+    """Return the Euler angles, shape (3, 1), rad, of the matrix ``dcm_sb``, in order of application, as in ``atan2``.
 
     Each angle is an ``atan2`` of two expressions. The image of the last axis under the dcm gives the first and the
     middle angle; the image of the first axis under the transposed dcm gives the last angle.

@@ -35,7 +35,10 @@ class Projection:
     about: str
 
     def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-        """Return the parameters of a unit quaternion, shape (3, 1); they are infinite if ``centre + q0 = 0``."""
+        """Return the parameters, shape (3, 1), of a unit quaternion q; they are infinite if ``centre + q0 = 0``.
+
+        This is a rotation by pi for classical and by 2 pi for modified parameters.
+        """
         q0, *vector = expressions(q, 4, "a quaternion")
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])
 
@@ -52,7 +55,10 @@ class Projection:
         return ImmutableMatrix([1 - square, *(2 * component for component in p)])
 
     def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
-        """Return the norm of the quaternion :meth:`homogeneous`: a polynomial if modified, a root if classical."""
+        """Return the norm of the quaternion of :meth:`homogeneous`, for the parameters ``values`` (default: symbols).
+
+        It is the polynomial ``1 + p^2`` for modified parameters and the root ``sqrt(1 + p^2)`` for classical ones.
+        """
         base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
         return base ** (exponent / 2)
 
@@ -128,7 +134,10 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
 def _along(
     parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
 ) -> tuple[Expr, ImmutableMatrix]:
-    """Return (determinant, inverse) of the rate matrix at the parameters ``size * n``, for a unit axis n."""
+    """Return (determinant, inverse) of a rate matrix at the parameters ``size * n``, for a unit axis n.
+
+    ``determinant`` and ``inverse`` are its formulas in ``parameters``; the determinant depends on their length alone.
+    """
     straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
     turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
     return determinant.xreplace(straight), inverse.xreplace(turned)

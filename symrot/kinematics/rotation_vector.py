@@ -136,14 +136,17 @@ def _along(frame: str, size: Expr) -> tuple[Expr, ImmutableMatrix]:
 
 
 def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMatrix:
-    """Return the unit quaternion of a rotation vector in rad, shape (4, 1)."""
+    """Return the unit quaternion, shape (4, 1), of a rotation vector (axis times angle, rad): the exponential map."""
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)
     return ImmutableMatrix([cos(size / 2), *(sin(size / 2) / size * component for component in vector)])
 
 
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the rotation vector of a quaternion, shape (3, 1), rad, of length up to 2 pi (up to pi for q0 >= 0)."""
+    """Return the rotation vector, shape (3, 1), rad, of a quaternion q of any norm: its length is at most 2 pi.
+
+    It is at most pi if q0 >= 0. At zero angle the formula is undefined, as in :func:`axis_angle_of_quaternion`.
+    """
     axis_and_angle = axis_angle_of_quaternion(q)
     return ImmutableMatrix(axis_and_angle[3] * axis_and_angle[:3, 0])
 
@@ -218,9 +221,9 @@ def _axis_angle_along(frame: str, alpha: Expr) -> tuple[Expr, ImmutableMatrix]:
 
 @cache
 def chart() -> Chart:
-    """Return the chart (attitude description) of rotation vectors v: it describes every attitude.
+    """Return the chart (attitude description) of rotation vectors: it describes every attitude.
 
-    It is singular at \\|v\\| = 2 pi, 4 pi, ...
+    It is singular at the lengths 2 pi, 4 pi, ..
     """
     return Chart(
         name="rotation_vector",

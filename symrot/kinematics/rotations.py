@@ -52,7 +52,7 @@ def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
 
 
 def axis_number(axis: int | str) -> int:
-    """Return the number 0, 1 or 2 of a coordinate axis, given as a number or as a letter X, Y, Z (either case)."""
+    """Return the number 0, 1 or 2 of a coordinate axis, given as this number or as a letter X, Y, Z (either case)."""
     if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
         return AXES.index(axis.upper())
     if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:

@@ -80,8 +80,10 @@ def event_array(number: int, quantity: str) -> str:
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
-    """Return the time and the named quantities of a trajectory with labels; default: the scene's output quantities,
-    and the derivatives by initial values and constants if the trajectory has them.
+    """Return the time and the quantities ``names`` of a trajectory with labels, as rows for tables and files.
+
+    The default is the scene's output quantities, and the derivatives by initial values and constants if the trajectory
+    has them.
 
     After Euler angles comes the quantity :data:`LOCK`, which is true for samples at gimbal lock: there only the sum or
     the difference of two angles is defined.

@@ -80,17 +80,20 @@ class Samples(ABC):
 
     @property
     def polhode(self) -> Floats:
-        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
+        """The polhode, the path of omega in the body on the energy ellipsoid: the same array as :attr:`omega`."""
         return self.omega
 
     @property
     def herpolhode(self) -> Floats:
-        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
+        """The herpolhode, the path of omega in space on the invariable plane: the same array as :attr:`omega_space`."""
         return self.omega_space
 
     @cached_property
     def rotation(self) -> Any:
-        """The attitudes, body to space, as one ``scipy.spatial.transform.Rotation``; motions follow one another."""
+        """The attitudes, body to space, as one ``scipy.spatial.transform.Rotation``.
+
+        Of n motions with m samples each, the n m rotations follow one another, motion after motion.
+        """
         from scipy.spatial.transform import Rotation
 
         return Rotation.from_quat(self.quaternion.reshape(-1, 4)[:, [1, 2, 3, 0]])

@@ -75,7 +75,7 @@ def dataframe(items: Sequence[Labelled], origin: About) -> Any:
 
 
 def _lead(items: Sequence[Labelled]) -> tuple[int, ...]:
-    """Return the dimensions of samples without those of components: (m,) for one motion, (n, m) for n motions."""
+    """Return the shape of the samples without components: (m,) for m samples of one motion, (n, m) for n motions."""
     if len(items) < 2:
         return items[0].values.shape
     item = items[1]

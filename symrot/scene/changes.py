@@ -175,7 +175,10 @@ def _set(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _place(scene: _Scene, key: str) -> Place:
-    """Return the place in the scene's content that a key names; raise InputError if there is none or more than one."""
+    """Return the place in the scene's content of the value that ``key`` names, such as ``omega_2`` or ``body.mass``.
+
+    A key that names nothing, or more than one value, raises InputError.
+    """
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")
     if key in SHORT:
@@ -305,7 +308,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content.
+    """Return the three components of the vector at a path of the content, to change one of them.
 
     If the content gives the vector in another form, such as ``omega_space``, the components that were read are used.
     """

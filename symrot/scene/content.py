@@ -57,7 +57,7 @@ def _scalar_first(rotation: Any, where: str) -> list[float]:
 
 
 def toml_text(content: Content) -> str:
-    """Return the content of a scene as TOML text; numbers keep their exact values."""
+    """Return the content of a scene as TOML text, such as a scene file; numbers keep their exact values."""
     lines: list[str] = []
     _write_table(content, "", lines)
     return "\n".join(lines).strip() + "\n"
@@ -99,7 +99,10 @@ def _quoted(text: str) -> str:
 
 
 def _value(value: Any) -> str:
-    """Return a value as TOML on one line; a fraction becomes exact text, which scenes accept as a number."""
+    """Return a value as TOML on one line, such as ``[1, 2.5]``.
+
+    A fraction becomes text, such as ``"1/3"``, which scenes accept as a number.
+    """
     match value:
         case bool():
             return str(value).lower()

@@ -139,7 +139,7 @@ def text(value: Any, where: str) -> str:
 
 
 def flag(value: Any, where: str) -> bool:
-    """Return the value if it is true or false; raise InputError otherwise."""
+    """Return the value if it is true or false; raise InputError, which names the place ``where``, otherwise."""
     if not isinstance(value, bool):
         fail(where, "true or false", value)
     return value

@@ -161,7 +161,8 @@ def read_samples(
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
     """Raise InputError unless the times increase, with two samples or more between consecutive switching times.
 
-    A switching time occurs twice: for the torque before the jump and after it.
+    A switching time occurs twice: for the torque before the jump and after it. ``place`` names the samples in the
+    message.
     """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")

@@ -83,7 +83,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques: first of the torques given by formulas, then of the table."""
+        """The kinds of all torques, such as ``("gravity", "damping")``; ``"table"`` comes last if there are samples."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 

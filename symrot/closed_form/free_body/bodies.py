@@ -30,7 +30,7 @@ _TERMS = 5  # doubles whose sum represents a fraction to 2^-265
 
 
 class _Tensors(Structure):
-    """The C struct ``tensors`` of bodies_at.c: arrays of inertia tensors."""
+    """The C struct ``tensors`` of bodies_at.c: the inertia tensors of n bodies, for :func:`principal_bodies`."""
 
     _fields_ = (
         ("entries", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
@@ -131,7 +131,10 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly."""
+    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly.
+
+    C computes with such sums and must know whether they are exact.
+    """
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

@@ -150,7 +150,7 @@ def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[flo
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return the differences I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
+    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
 
     Each sum hi + lo is a difference. The moments are the integers ``i``, divided by the common denominator ``shared``.
     """
@@ -176,7 +176,10 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect |L|^2 - 2 T I_mid for integer body rates, as two doubles whose sum it is."""
+        """Return the scaled defect of the motion with the integer body rates ``w``, as two doubles whose sum it is.
+
+        The defect is |L|^2 - 2 T I_mid, see :class:`Defect`.
+        """
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

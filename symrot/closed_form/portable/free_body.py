@@ -233,7 +233,8 @@ class PortableFreeBody:
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
     """Return the list I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a motion.
 
-    Both are computed from exact fractions. The sign of the defect tells around which axis the motion goes.
+    Both are computed from exact fractions. L is the angular momentum, T the kinetic energy and I_mid the middle moment
+    of inertia; the sign of the defect tells around which axis the motion goes.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]

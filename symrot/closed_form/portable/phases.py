@@ -27,7 +27,7 @@ def number(high: float, low: float) -> Any:
 
 
 def vector(pairs: list[float]) -> list[Any]:
-    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers: each is a sum hi + lo."""
+    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers, one for each sum hi + lo."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 
@@ -56,7 +56,7 @@ class Phase(NamedTuple):
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with a given rate, in revolutions per unit of time, and start, in revolutions.
+        """Return the phase with the given rate, in revolutions per unit of time, and start, in revolutions.
 
         If the phase is periodic, the start is reduced to the range from -1/2 to 1/2.
         """

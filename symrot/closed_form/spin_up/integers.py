@@ -177,7 +177,10 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which the number of revolutions may be too large for double-double numbers."""
+        """The time, s, beyond which there may be too many revolutions for double-double numbers.
+
+        Integers compute the samples there.
+        """
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn

@@ -60,7 +60,7 @@ def product_of(
     content: Rational, above: PolyElement, below: PolyElement, generators: Sequence[Expr],
     roots: Mapping[int, tuple[int, PolyElement]],
 ) -> Product:  # fmt: skip
-    """Return the fraction ``content * above / below`` as a product of powers of irreducible factors.
+    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors.
 
     ``generators`` are the variables of the polynomials. ``roots`` holds, for the number of a variable that is a root g,
     the index n and the polynomial P of its relation ``g^n = P``.

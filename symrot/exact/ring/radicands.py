@@ -79,10 +79,10 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return, for each square root that is a product of other roots, its expression by these roots.
+    """Return the square roots that are products of other roots: a map from each to its expression by these roots.
 
     The method is linear algebra modulo 2: a root is represented by the irreducible factors with odd exponents in its
-    radicand.
+    radicand. The roots of ``a b`` and ``b c`` give that of ``a c``, since b has an even exponent in their product.
 
     Parameters
     ----------

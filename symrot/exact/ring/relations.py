@@ -62,7 +62,7 @@ class Relations:
 
     @property
     def contradictory(self) -> bool:
-        """Whether the relations contradict each other, that is, imply 1 = 0."""
+        """Whether the relations contradict each other, that is, imply 1 = 0; then no point satisfies the hypotheses."""
         return any(poly.is_ground for poly in self.basis)
 
 
