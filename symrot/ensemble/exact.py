@@ -35,7 +35,7 @@ MOST_BITS = 59  # largest number of conditions in a pattern, without the three o
 class Kind(NamedTuple):
     """A closed form and the index (0, 1 or 2) of the body axis to which it refers, such as a symmetry axis.
 
-    ``form`` is None for trajectories without a closed form, ``axis`` for a form without an axis.
+    ``form`` is None for trajectories without a closed form; ``axis`` is None if the form refers to no axis.
     """
 
     form: ClosedForm | None

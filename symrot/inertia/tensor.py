@@ -72,7 +72,7 @@ def transpose(tensor: Any) -> Tensor:
 
 
 def dot(left: Any, right: Any) -> Any:
-    """Return the scalar product of two vectors."""
+    """Return the scalar product of two vectors, each three numbers of any type."""
     (a, b, c), (x, y, z) = vector(left), vector(right)
     return a * x + b * y + c * z
 
@@ -90,7 +90,7 @@ def apply(tensor: Any, v: Any) -> Vector:
 
 
 def multiply(left: Any, right: Any) -> Tensor:
-    """Return the product of two tensors."""
+    """Return the product ``left * right`` of two tensors, as three rows of three numbers."""
     columns = transpose(right)
     return matrix(tuple(tuple(dot(row, column) for column in columns) for row in matrix(left)))
 

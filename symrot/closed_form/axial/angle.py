@@ -121,7 +121,10 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle modulo one revolution, in double-double numbers, by a series for small ``|decay t|``."""
+        """Return ``share`` times the angle at the times t, modulo one revolution, as double-double numbers.
+
+        The series is for small ``|decay t|``.
+        """
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)
@@ -130,9 +133,10 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the angle modulo one revolution, in double-double numbers, for any ``decay t`` that is not small.
+        """Return ``share`` times the angle at the times t, modulo one revolution, as double-double numbers.
 
-        The angle is the sum of a part that grows steadily and a transient part that contains ``exp(-decay t)``.
+        ``decay t`` must not be small: the angle is the sum of a part that grows steadily and a transient part that
+        contains ``exp(-decay t)``.
         """
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))

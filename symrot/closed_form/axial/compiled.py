@@ -209,8 +209,9 @@ class Constants:
     def shapes(self, one: Any, other: Any) -> list[Any]:
         """Return the entries of the matrix `omega` of axial.h, row by row, for the initial transverse rates.
 
-        The matrix maps three numbers to the body components of the angular velocity: the damped cosine and sine of the
-        angle by which the transverse angular velocity has rotated in the body, and the axial rate.
+        The rates, rad/s, are ``one`` and ``other``. The matrix maps three numbers to the body components of the angular
+        velocity: the damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
+        body, and the axial rate.
         """
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0

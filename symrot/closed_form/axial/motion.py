@@ -52,7 +52,10 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude can be computed: only if the body does not rotate across the driven axis."""
+        """Whether the attitude can be computed: only if the body does not also rotate across the driven axis.
+
+        With such a rotation, this module has no closed form for the attitude.
+        """
         return not any(self._across)
 
     def evaluate(

@@ -49,9 +49,9 @@ def key(latex: str) -> str:
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` -> ``[["a", "b"], ["c"]]``.
+    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` -> a and b; c.
 
-    A comma before ``\quad`` outside brackets separates equations.
+    A comma before ``\quad`` outside brackets separates equations. The sides are text, with the blanks around them.
     """
     equations: list[list[str]] = [[""]]
     depth = 0

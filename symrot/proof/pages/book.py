@@ -162,7 +162,7 @@ def _words(page: Page) -> Iterator[tuple[str, str, str]]:
 
 
 def _plain(text: str) -> str:
-    r"""Return the text of Markdown without markup, for the search: ``**Spin** $\\omega_3$`` -> "Spin ω3"."""
+    r"""Return the text of Markdown without markup, for the search: ``**Spin** $\omega_3$`` -> "Spin ω3"."""
     return unescape(re.sub(r"<[^>]*>", "", prose(text)))
 
 
