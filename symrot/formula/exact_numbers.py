@@ -14,6 +14,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from math import isfinite, isqrt, lcm
+from numbers import Rational
 from typing import NamedTuple, NoReturn, SupportsFloat
 
 from symrot.errors import InputError
@@ -322,7 +323,12 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the value of a NumPy scalar or SymPy number, converted to a double, as an angle in rad."""
+    """Return the value of a NumPy scalar or SymPy number as an angle in rad.
+
+    Rational numbers, such as SymPy's 1/3, stay exact; other numbers are converted to a double.
+    """
+    if isinstance(value, Rational):
+        return _exactly(Fraction(int(value.numerator), int(value.denominator)))
     return _from_float(float(value))
 
 

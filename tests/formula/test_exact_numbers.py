@@ -4,7 +4,9 @@ from decimal import Decimal
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
+import sympy
 
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI, cos, equal, read, read_angle, sin, sqrt
@@ -40,6 +42,11 @@ def real(value: Fraction) -> mpmath.mpf:
 @pytest.mark.parametrize(("text", "value"), EXACT.items())
 def test_a_rational_value_is_exact(text, value):
     assert read(text) == value
+
+
+def test_rationals_of_other_libraries_are_exact():
+    assert read(sympy.Rational(1, 3)) == Fraction(1, 3)
+    assert read(np.int64(2**53 + 1)) == 2**53 + 1
 
 
 def test_a_float_is_its_binary_value_and_a_decimal_is_what_it_says():
