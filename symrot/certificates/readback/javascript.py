@@ -8,12 +8,11 @@ no code with the emitter.
 
 import re
 
-from symrot.certificates.readback.c_functions import CFunction, functions_of
-from symrot.certificates.readback.operations import Operations
-from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.readback.c_functions import CFunction
+from symrot.certificates.readback.other_languages import compare_operations, kernel_head
 from symrot.errors import CertificateError
 
-__all__ = ["compare_javascript", "read_javascript"]
+__all__ = ["compare_javascript"]
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _TOKEN = re.compile(
@@ -28,39 +27,14 @@ _MATH = {
 _ONLY_IN_C = ("double", "float", "fabs", "symrot_", "void", "static", "inline", "size_t", *_MATH.values())
 
 
-def read_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> Operations:
-    """Return the operations of a kernel in JavaScript.
-
-    Parameters
-    ----------
-    text : str
-        A JavaScript module as symrot emits it.
-    name : str
-        Name of its function; the C function has the prefix ``symrot_``.
-    c_text : str
-        The C text of the same kernel, which gives the sizes of the arrays.
-    where : str
-        The file's name, for errors.
-
-    Raises
-    ------
-    CertificateError
-        For any JavaScript that symrot does not emit.
-    """
-    model = functions_of(c_text, where).get(f"symrot_{name}")
-    if model is None:
-        raise CertificateError(f"{where}: expected C text with the function symrot_{name}")
-    return read_kernel(_as_c(text, name, model, where), f"symrot_{name}", where)
-
-
 def compare_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> None:
     """Raise CertificateError unless a JavaScript kernel performs the operations of the C function for doubles.
 
-    The operations are compared one by one: same constants, same functions, same order of rounding. The arguments are
-    those of :func:`read_javascript`.
+    The operations are compared one by one: same constants, same functions, same order of rounding. ``text`` is a module
+    as symrot emits it, ``name`` its function, ``c_text`` the C text of the same kernel, and ``where`` the file's name,
+    for errors.
     """
-    if read_javascript(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
-        raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
+    compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
@@ -91,11 +65,7 @@ def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
     expected = [parameter.name for parameter in model.parameters]
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")
-    declared = [
-        f"{'const ' * (bool(p.size) and p.is_const)}double {p.name}" + (f"[{p.size}]" if p.size else "")
-        for p in model.parameters
-    ]
-    return f"void {model.name}({', '.join(declared)})"
+    return kernel_head(model)
 
 
 def _translated(content: str, where: str) -> str:

@@ -9,12 +9,11 @@ emitter.
 
 import re
 
-from symrot.certificates.readback.c_functions import CFunction, functions_of
-from symrot.certificates.readback.operations import Operations
-from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.readback.c_functions import CFunction
+from symrot.certificates.readback.other_languages import compare_operations, kernel_head
 from symrot.errors import CertificateError
 
-__all__ = ["compare_jax", "read_jax"]
+__all__ = ["compare_jax"]
 
 _HEAD = re.compile(r'"""(?:(?!""")[^\\])*"""\n\n(?:import jax\n)?import jax\.numpy as jnp\n', re.ASCII)
 _DEFINITION = re.compile(r"((?:@jax\.custom_jvp\n)?)def (\w+)\(([\w, ]*)\):\n", re.ASCII)
@@ -38,39 +37,14 @@ _RULES = {
 """The rules of derivatives: the slope of sinc(x) is -x*tangent_gap(x), and so on."""
 
 
-def read_jax(text: str, name: str, c_text: str, where: str = "kernel") -> Operations:
-    """Return the operations of a kernel in JAX.
-
-    Parameters
-    ----------
-    text : str
-        A Python module as symrot emits it.
-    name : str
-        Name of its function; the C function has the prefix ``symrot_``.
-    c_text : str
-        The C text of the same kernel, which gives the sizes of the arrays.
-    where : str
-        The file's name, for errors.
-
-    Raises
-    ------
-    CertificateError
-        For any Python that symrot does not emit.
-    """
-    model = functions_of(c_text, where).get(f"symrot_{name}")
-    if model is None:
-        raise CertificateError(f"{where}: expected C text with the function symrot_{name}")
-    return read_kernel(_as_c(text, name, model, where), f"symrot_{name}", where)
-
-
 def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:
     """Raise CertificateError unless a kernel in JAX performs the operations of the C function for doubles.
 
-    The operations are compared one by one: same constants, same functions, same order of rounding. The arguments are
-    those of :func:`read_jax`.
+    The operations are compared one by one: same constants, same functions, same order of rounding. ``text`` is a module
+    as symrot emits it, ``name`` its function, ``c_text`` the C text of the same kernel, and ``where`` the file's name,
+    for errors.
     """
-    if read_jax(text, name, c_text, where) != read_kernel(c_text, f"symrot_{name}", where):
-        raise CertificateError(f"{where}: expected the operations of the C function symrot_{name}, got others")
+    compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
@@ -155,11 +129,7 @@ def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -
         if lines[place] != "    ])":
             raise CertificateError(f"{where}: expected the end of the array {stack[1]}, got {lines[place][:30]!r}")
         place += 1
-    declared = [
-        f"{'const ' * (bool(p.size) and p.is_const)}double {p.name}" + (f"[{p.size}]" if p.size else "")
-        for p in model.parameters
-    ]
-    return "\n".join([f"void {model.name}({', '.join(declared)})", "{", *body, "}"])
+    return "\n".join([kernel_head(model), "{", *body, "}"])
 
 
 def _assignment(line: str, where: str) -> str:

@@ -1,0 +1,52 @@
+"""Kernels in a language other than C: their text is rewritten as C, which is read and compared.
+
+What differs between JavaScript and JAX is the function that rewrites a text as C; the rest is here.
+"""
+
+from collections.abc import Callable
+
+from symrot.certificates.readback.c_functions import CFunction, functions_of
+from symrot.certificates.readback.readback import read_kernel
+from symrot.errors import CertificateError
+
+__all__ = ["AsC", "compare_operations", "kernel_head"]
+
+AsC = Callable[[str, str, CFunction, str], str]
+"""Takes the text of a module, the name of its kernel, the C function of the same kernel, which gives the sizes of
+arrays, and the file's name, for errors. Returns the C text that means the same.
+"""
+
+
+def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str) -> None:
+    """Raise CertificateError unless a kernel performs the operations of the C function for doubles.
+
+    The operations are compared one by one: same constants, same functions, same order of rounding.
+
+    Parameters
+    ----------
+    as_c : function
+        Rewrites the text as C; raises CertificateError for a text that symrot does not emit.
+    text : str
+        A module as symrot emits it.
+    name : str
+        Name of its function; the C function has the prefix ``symrot_``.
+    c_text : str
+        The C text of the same kernel.
+    where : str
+        The file's name, for errors.
+    """
+    function = f"symrot_{name}"
+    model = functions_of(c_text, where).get(function)
+    if model is None:
+        raise CertificateError(f"{where}: expected C text with the function {function}")
+    if read_kernel(as_c(text, name, model, where), function, where) != read_kernel(c_text, function, where):
+        raise CertificateError(f"{where}: expected the operations of the C function {function}, got others")
+
+
+def kernel_head(model: CFunction) -> str:
+    """Return the head of the C function ``model``: ``void symrot_NAME(const double x[3], double y[3])``."""
+    declared = [
+        f"{'const ' * (bool(p.size) and p.is_const)}double {p.name}" + (f"[{p.size}]" if p.size else "")
+        for p in model.parameters
+    ]
+    return f"void {model.name}({', '.join(declared)})"
