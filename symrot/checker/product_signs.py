@@ -6,13 +6,13 @@
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import read_relation
-from symrot.checker.claim.tree import Node, negated, text
+from symrot.checker.claim.reader import Relation
+from symrot.checker.claim.tree import Node, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
+from symrot.checker.equivalent_claim import brought_back
 from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
-from symrot.checker.verdict import Repair, Verdict
-from symrot.errors import InputError
+from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "sign_by_integral", "with_minus_sign", "with_sign"]
 
@@ -66,19 +66,10 @@ def in_claim(verdict: Verdict) -> Verdict:
 
     The repairs change their signs back, and a note names the convention.
     """
-    repairs = tuple(repaired for repair in verdict.repairs if (repaired := _restored(repair)) is not None)
-    return replace(verdict, repairs=repairs, notes=(*verdict.notes, NOTE))
+    return brought_back(verdict, _changed, NOTE)
 
 
-def _restored(repair: Repair) -> Repair | None:
-    try:
-        sign, left, right = _changed(read_relation(repair.text))
-    except InputError:
-        return None
-    return replace(repair, text=f"{text(left)} {sign} {text(right)}")
-
-
-def _changed(relation: tuple[str, Node, Node]) -> tuple[str, Node, Node]:
+def _changed(relation: Relation) -> Relation:
     """Return an equation with the opposite sign of each product of inertia: ``I_xy = -a`` for ``I_xy = a``.
 
     If a side is a single product of inertia, both sides change their signs, so that it has none.

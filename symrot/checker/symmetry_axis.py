@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import read_relation
-from symrot.checker.claim.tree import Node, text
-from symrot.checker.verdict import Repair, Verdict
-from symrot.errors import InputError
+from symrot.checker.claim.reader import Relation
+from symrot.checker.claim.tree import Node
+from symrot.checker.equivalent_claim import brought_back
+from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "with_axis_z"]
 
@@ -41,20 +41,11 @@ def in_claim(verdict: Verdict, axis: str) -> Verdict:
     ``axis`` is the axis of symmetry, x or y. The repairs get the names of the original claim, and a note says so.
     """
     back = {new: old for old, new in TURNED[axis].items()}
-    repairs = tuple(changed for repair in verdict.repairs if (changed := _restored(repair, back)) is not None)
     note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
-    return replace(verdict, repairs=repairs, notes=(*verdict.notes, note))
+    return brought_back(verdict, lambda relation: _renamed(relation, back), note)
 
 
-def _restored(repair: Repair, back: Mapping[str, str]) -> Repair | None:
-    try:
-        sign, left, right = _renamed(read_relation(repair.text), back)
-    except InputError:
-        return None
-    return replace(repair, text=f"{text(left)} {sign} {text(right)}")
-
-
-def _renamed(relation: tuple[str, Node, Node], axes: Mapping[str, str]) -> tuple[str, Node, Node]:
+def _renamed(relation: Relation, axes: Mapping[str, str]) -> Relation:
     """Return an equation whose moments of inertia are about other axes, as I_z for I_x.
 
     ``axes`` gives the new axis for each of x, y and z.
