@@ -7,7 +7,6 @@ several lines one by one; a line that gives a name to a formula defines the name
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 
 from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd
 from symrot.checker.arrays.index_notation import has_index_symbols
@@ -19,7 +18,7 @@ from symrot.checker.claim.reader import Declared, Reading, Relation, read_relati
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, number, walk, with_names
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
@@ -56,7 +55,6 @@ NAMING = ("definition", "recognised")
 CALLS_FOR_ARRAYS = ("qmul(", "eye(")
 """Calls that answers have only if the claim has one of them."""
 
-ZERO = Node("number", Fraction(0))
 
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
@@ -394,7 +392,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     inside = {own for own, tree in claim.define for _, node in walk(tree) if node.kind == "call" and left in node.args}
     if inside:
         return verdict  # the angle of a rotation in R is the angle on the left side of psi = atan2(R11, R21)
-    define = tuple((own, _with_name(tree, name, f"{name}_1")) for own, tree in claim.define)
+    define = tuple((own, with_names(tree, {name: f"{name}_1"})) for own, tree in claim.define)
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
         return verdict
@@ -402,18 +400,11 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     return replace(other, notes=(*other.notes, note))
 
 
-def _with_name(tree: Node, old: str, new: str) -> Node:
-    """Return a tree with the name ``new`` in place of the name ``old``."""
-    if tree.kind == "name" and tree.value == old:
-        return replace(tree, value=new)
-    return replace(tree, args=tuple(_with_name(part, old, new) for part in tree.args))
-
-
 def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
     """Return, in a tuple, a note on the convention ``0^0 = 1`` for a true claim with a power ``x^0``; otherwise ()."""
     sides = claim.relation[1:] if claim.relation else ()
     nodes = [node for side in sides for _, node in walk(side)]
-    powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == ZERO]
+    powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == number(0)]
     is_open = any(base.kind != "number" or not base.value for base in powers)
     return ("0^0 is read as 1, by the convention of algebra",) if is_open and verdict.verdict == "true" else ()
 
@@ -519,10 +510,10 @@ def _on_parts(
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
-    for number, line in enumerate(lines):
+    for place, line in enumerate(lines):
         own = [next(remaining) for _ in line]
         own = own if units else _as_named_chain(line, own, notation)
-        others = [*lines[:number], *lines[number + 1 :]]
+        others = [*lines[:place], *lines[place + 1 :]]
         elsewhere = {name for other in others for claim in other for name, _ in claim.define}
         named = named_formula(line[0])
         defines = named is not None and named.name in elsewhere

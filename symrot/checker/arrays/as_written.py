@@ -6,11 +6,12 @@ A claim with quaternions is decided with columns of four numbers, so that ``|q|Â
 from collections.abc import Sequence
 from dataclasses import replace
 
+from symrot.checker.arrays.pauli import eye
 from symrot.checker.claim.tree import Node, number, product, walk
 
 __all__ = ["as_written", "has_arrays", "is_odd"]
 
-QUATERNION, UNIT = ("qmul", "conjugate"), Node("call", "eye", (number(4),))
+QUATERNION, UNIT = ("qmul", "conjugate"), eye()
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:

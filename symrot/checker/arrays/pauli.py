@@ -12,7 +12,7 @@ from symrot.checker.claim.shapes import shape_of
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
 from symrot.errors import InputError
 
-__all__ = ["commutator", "with_pauli_matrices"]
+__all__ = ["commutator", "eye", "with_pauli_matrices"]
 
 Relation = tuple[str, Node, Node]
 Complex = tuple[tuple[complex, complex], tuple[complex, complex]]
@@ -59,7 +59,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     if not matrices or names_another or not is_plain or not is_evident or is_known:
         return relation, ()
     define = tuple((name, _real(NAMES[name])) for name in matrices)
-    define = (*define, (IMAGINARY, _real(((1j, 0), (0, 1j)))), (UNIT_MATRIX, Node("call", "eye", (number(SIZE),))))
+    define = (*define, (IMAGINARY, _real(((1j, 0), (0, 1j)))), (UNIT_MATRIX, eye()))
     shapes = dict.fromkeys([name for name, _ in define], (SIZE, SIZE))
     left, right = map(_with_traces, (left, right))
     return (sign, _as_matrix(left, shapes), _as_matrix(right, shapes)), define

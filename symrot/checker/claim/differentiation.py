@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import with_time
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, walk, with_names
 from symrot.checker.typed.cursor import TIME
 from symrot.exact import normal_form
 from symrot.exact.decision import flatten
@@ -44,7 +44,7 @@ def as_functions(claim: Claim) -> Claim | None:
     (variable,) = variables
     if variable.kind != "name" or (variable != TIME and TIME in nodes):
         return None
-    left, right = (with_time(_with_variable(side, str(variable.value)), names) for side in sides)
+    left, right = (with_time(with_names(side, {str(variable.value): "t"}), names) for side in sides)
     symbols = tuple(symbol for symbol in claim.symbols if symbol not in names)
     others = (*claim.functions, *(name for name in claim.symbols if name in names))
     notes = (*claim.notes, *_on_letters(names, derivatives, str(variable.value), dict(claim.define)))
@@ -103,10 +103,3 @@ def _is_of_formula(derivative: Node) -> bool:
 
 def _is_derivative(node: Node) -> bool:
     return node.kind == "call" and node.value == "diff"
-
-
-def _with_variable(node: Node, name: str) -> Node:
-    """Return a tree with the time t in place of the variable ``name``."""
-    if node.kind == "name" and node.value == name:
-        return TIME
-    return Node(node.kind, node.value, tuple(_with_variable(child, name) for child in node.args), node.span)
