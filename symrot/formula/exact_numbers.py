@@ -323,12 +323,7 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the value of a NumPy scalar or SymPy number as an angle in rad.
-
-    Rational numbers, such as SymPy's 1/3, stay exact; other numbers are converted to a double.
-    """
-    if isinstance(value, Rational):
-        return _exactly(Fraction(int(value.numerator), int(value.denominator)))
+    """Return the value of a NumPy scalar or SymPy number, converted to a double, as an angle in rad."""
     return _from_float(float(value))
 
 
@@ -338,6 +333,8 @@ _READERS: dict[type, Callable[..., Angle]] = {
     float: _from_float,
     int: lambda value: _exactly(Fraction(value)),
     Fraction: _exactly,
+    # of SymPy and NumPy
+    Rational: lambda value: _exactly(Fraction(int(value.numerator), int(value.denominator))),
 }
 
 
