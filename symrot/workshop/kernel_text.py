@@ -104,7 +104,8 @@ class KernelText(ABC):
         """Return the source in the language ``target``: ``"c"``, ``"numpy"``, ``"js"`` or ``"jax"``."""
         if target == "c":
             return self.c(bounds)[0]
-        return {"numpy": lambda: self.numpy, "js": lambda: self.js, "jax": lambda: self.jax}[target]()
+        text: str = getattr(self, target)
+        return text
 
     def files(self, target: str, bounds: Bounds | None = None) -> dict[str, str]:
         """Return the files in the language ``target`` as a map from name to text; in C the header comes first."""
