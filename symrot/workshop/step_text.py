@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 from symrot.certificates.certificate import KernelUnderTest
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
@@ -12,7 +12,7 @@ from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c
 from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
-from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
+from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.codegen.steps import (
     RK4,
     Method,
@@ -31,6 +31,7 @@ from symrot.kernels.library import is_kernel
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
+from symrot.workshop.steps.files import StepFiles, constant_table
 
 __all__ = ["ORDER", "STEPS", "StepText", "step_method", "step_text"]
 
@@ -112,7 +113,7 @@ def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelTe
     return ExactStepText(scene)
 
 
-class StepText(KernelText):
+class StepText(StepFiles):
     """The texts of one step of a scene's motion with a fixed method.
 
     Parameters
@@ -122,8 +123,6 @@ class StepText(KernelText):
     method : Method
         The method, see :func:`step_method`.
     """
-
-    folders: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, scene: Scene, method: Method) -> None:
         self.rates, self.method = SceneText(scene), method
@@ -165,25 +164,13 @@ class StepText(KernelText):
             contract=contract if target == "c" else contract[:1],
         )  # fmt: skip
 
-    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
-        if bounds:
-            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
-        return self._c
-
     @cached_property
-    def _c(self) -> tuple[str, str]:
+    def _source_and_header(self) -> tuple[str, str]:
         reals, description = (DOUBLE, FLOAT), self._description("c")
         return (
             with_head(self._program, description, c_functions(self._program, reals)),
             c_header(self._program, description, reals),
         )
-
-    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
-        values = list(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
-        parameters = {parameters_file(self.name): parameters_header(self.name, values)} if values else {}
-        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
 
     @cached_property
     def numpy(self) -> str:
@@ -223,7 +210,7 @@ class StepText(KernelText):
         import mpmath
 
         states = [name for name, *_ in self._rates_program.signature.argument("y").components]
-        parameters = dict(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
+        parameters = dict(self._parameters)
         functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in FUNCTIONS}
         vectors = []
         with mpmath.workdps(DIGITS):
@@ -242,6 +229,10 @@ class StepText(KernelText):
         return vectors
 
     @property
+    def _parameters(self) -> list[tuple[str, float]]:
+        return list(zip(self._parameter_names, self.rates.inputs.parameters, strict=True))
+
+    @property
     def _parameter_names(self) -> list[str]:
         return [name for a in self._rates_program.signature.arguments if a.name == "p" for name, *_ in a.components]
 
@@ -256,8 +247,8 @@ class StepText(KernelText):
             "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"', *included, "",
             f"#define STATES {count}", *([] if outputs == count else [f"#define OUTPUTS {outputs}"]),
             f"#define VECTORS {len(self._vectors)}", "",
-            _table(f"vectors[VECTORS][2][{columns}]", [[start, after] for start, _, after in self._vectors]),
-            _table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
+            constant_table(f"vectors[VECTORS][2][{columns}]", [[start, after] for start, _, after in self._vectors]),
+            constant_table("sizes[VECTORS]", [dt for _, dt, _ in self._vectors]),
             "", *self._check(DOUBLE, "1e-14"), "", *self._check(FLOAT, "4e-6"), "",
             "int main(void)", "{", "    const int failed = check() || checkf();",
             f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with {DIGITS} digits");',
@@ -284,15 +275,3 @@ class StepText(KernelText):
             f"            if (!(fabs(next[i] - vectors[k][1][i]) <= {tolerance}*scale))", "                return 1;",
             "    }", "    return 0;", "}",
         ]  # fmt: skip
-
-
-def _table(declared: str, values: Any) -> str:
-    """Return the C definition of a constant table of doubles, such as ``static const double x[2] = {1.0, 2.0};``.
-
-    ``declared`` is the name with its sizes, ``x[2]``; ``values`` are nested lists of numbers.
-    """
-
-    def text(value: Any) -> str:
-        return f"{{{', '.join(map(text, value))}}}" if isinstance(value, list) else repr(value)
-
-    return f"static const double {declared} = {text(values)};"

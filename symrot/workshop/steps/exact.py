@@ -15,15 +15,15 @@ from symrot.certificates.certificate import KernelUnderTest
 from symrot.closed_form.build import joined
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
-from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
+from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.errors import CertificateError, InputError
 from symrot.planning.plan import make_plan
 from symrot.scene.scene import Scene
-from symrot.workshop.kernel_text import Bounds, KernelText, scene_kernel_name
+from symrot.workshop.kernel_text import Bounds, scene_kernel_name
+from symrot.workshop.steps.files import StepFiles, constant_table
 
 __all__ = ["ExactStepText"]
 
-STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
 SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
@@ -130,10 +130,10 @@ _FORMS: Mapping[str, Callable[[Scene, str], _Form]] = {
 
 
 def _table(name: str, values: Sequence[float]) -> str:
-    return f"    static const double {name}[] = {{{', '.join(map(repr, values))}}};"
+    return f"    {constant_table(f'{name}[]', list(values))}"
 
 
-class ExactStepText(KernelText):
+class ExactStepText(StepFiles):
     """The C text of one step of a motion in closed form, with a header, the parameters of the scene and a test.
 
     Parameters
@@ -142,7 +142,6 @@ class ExactStepText(KernelText):
         A scene whose motion has a closed form.
     """
 
-    folders: ClassVar[Mapping[str, str]] = {}
     has_certificate: ClassVar[bool] = False
 
     def __init__(self, scene: Scene) -> None:
@@ -150,17 +149,13 @@ class ExactStepText(KernelText):
         self.scene, self.form = scene, _form(scene)
         self.name = f"{scene_kernel_name(scene.name).removesuffix('_rates')}_exact_step"
 
-    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
-        if bounds:
-            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
+    @cached_property
+    def _source_and_header(self) -> tuple[str, str]:
         return self._source, self._header
 
-    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
-        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
-        values = [(name, float(value)) for name, _, value in self.form.parameters]
-        parameters = {parameters_file(self.name): parameters_header(self.name, values)}
-        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
+    @property
+    def _parameters(self) -> list[tuple[str, float]]:
+        return [(name, float(value)) for name, _, value in self.form.parameters]
 
     def _other(self, target: str) -> str:
         raise InputError(f"step: expected the target 'c' for the step 'exact', got {target}")
@@ -277,12 +272,6 @@ class ExactStepText(KernelText):
     def _test(self) -> str:
         """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
 
-        def table(declared: str, values: Any) -> str:
-            rows = ", ".join(
-                "{" + ", ".join(map(repr, row)) + "}" if isinstance(row, list) else repr(row) for row in values
-            )
-            return f"static const double {declared} = {{{rows}}};"
-
         name, count = f"symrot_{self.name}", len(self.form.parameters)
         checks = []
         for real, tolerance in ((DOUBLE, "4e-15"), (FLOAT, "2e-5")):
@@ -302,9 +291,9 @@ class ExactStepText(KernelText):
             f"/* Test of {self.name}: returns 0 if double and float agree with the motion of exact constants. */",
             "#include <math.h>", "#include <stdio.h>", f'#include "{self.name}.h"',
             f'#include "{parameters_file(self.name)}"', "",
-            table(f"starts[{len(SHARES)}][7]", [start for start, _, _ in self._vectors]),
-            table(f"sizes[{len(SHARES)}]", [dt for _, dt, _ in self._vectors]),
-            table(f"ends[{len(SHARES)}][7]", [after for _, _, after in self._vectors]), "", *checks,
+            constant_table(f"starts[{len(SHARES)}][7]", [start for start, _, _ in self._vectors]),
+            constant_table(f"sizes[{len(SHARES)}]", [dt for _, dt, _ in self._vectors]),
+            constant_table(f"ends[{len(SHARES)}][7]", [after for _, _, after in self._vectors]), "", *checks,
             "int main(void)", "{", "    const int failed = check() || checkf();",
             f'    puts(failed ? "{self.name}: differs" : "{self.name}: agrees with the motion");',
             "    return failed;", "}",

@@ -1,0 +1,55 @@
+"""The C files of a time step: header, source, values of the parameters, test."""
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
+from symrot.errors import InputError
+from symrot.workshop.kernel_text import Bounds, KernelText
+
+__all__ = ["StepFiles", "constant_table"]
+
+
+class StepFiles(KernelText):
+    """The texts of a time step, of any method; a step has no bounds of rounding errors."""
+
+    folders: ClassVar[Mapping[str, str]] = {}
+
+    @property
+    @abstractmethod
+    def _source_and_header(self) -> tuple[str, str]: ...
+
+    @property
+    @abstractmethod
+    def _parameters(self) -> Sequence[tuple[str, float]]:
+        """Name and value of each parameter p of the scene; may be empty."""
+
+    @property
+    @abstractmethod
+    def _test(self) -> str:
+        """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
+
+    def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
+        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
+        if bounds:
+            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
+        return self._source_and_header
+
+    def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
+        """Return the C files as a map from name to text: header, source, values of the parameters, test."""
+        values = self._parameters
+        parameters = {parameters_file(self.name): parameters_header(self.name, values)} if values else {}
+        return super().c_files(bounds) | parameters | {f"{self.name}_test.c": self._test}
+
+
+def constant_table(declared: str, values: Any) -> str:
+    """Return the C definition of a constant table of doubles, such as ``static const double x[2] = {1.0, 2.0};``.
+
+    ``declared`` is the name with its sizes, ``x[2]``; ``values`` are nested lists of numbers.
+    """
+
+    def text(value: Any) -> str:
+        return f"{{{', '.join(map(text, value))}}}" if isinstance(value, list) else repr(value)
+
+    return f"static const double {declared} = {text(values)};"
