@@ -7,6 +7,7 @@ its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating 
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from symrot.codegen.powers import power
 from symrot.errors import InputError
 
 __all__ = ["Dual", "dual_functions"]
@@ -68,13 +69,8 @@ class Dual:
         return Dual(other, {}) / self
 
     def __pow__(self, exponent: int) -> "Dual":
-        if exponent < 0:
-            return 1 / self**-exponent
-        result = self
-        for bit in format(exponent, "b")[1:]:
-            result = result * result
-            result = result * self if bit == "1" else result
-        return result
+        raised: Dual = power(self, exponent)
+        return raised
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:

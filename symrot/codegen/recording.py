@@ -11,6 +11,7 @@ from typing import Any
 
 from symrot.codegen.lowering.tape import Operation
 from symrot.codegen.lowering.temporary_names import with_names
+from symrot.codegen.powers import power
 from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node
 
@@ -115,13 +116,7 @@ class Recorded:
         return self.recorder.add("neg", self.index)
 
     def __pow__(self, exponent: int) -> Any:
-        if exponent < 0:
-            return 1 / self**-exponent
-        result: Any = self
-        for bit in format(exponent, "b")[1:]:
-            result = result * result
-            result = result * self if bit == "1" else result
-        return result
+        return power(self, exponent)
 
 
 def is_exactly(value: Any, number: int) -> bool:
