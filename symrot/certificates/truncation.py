@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import inf, nextafter, prod
+from operator import truediv
 from typing import Any
 
 from mpmath import iv
@@ -77,16 +78,19 @@ def _undefined(name: str) -> Callable[..., Any]:
     return refuse
 
 
-def _root(x: Any) -> Any:
+def _positive(x: Any) -> Any:
+    """Return an interval of positive numbers unchanged; raise ZeroDivisionError for any other one."""
     if not x.a > 0:
         raise ZeroDivisionError
-    return iv.sqrt(x)
+    return x
+
+
+def _root(x: Any) -> Any:
+    return iv.sqrt(_positive(x))
 
 
 def _log(x: Any) -> Any:
-    if not x.a > 0:
-        raise ZeroDivisionError
-    return iv.log(x)
+    return iv.log(_positive(x))
 
 
 _SCALAR: dict[str, Callable[[Any], Any]] = {
@@ -118,6 +122,11 @@ class _Power:
     @staticmethod
     def of(value: Any, count: int) -> "_Power":
         return value if isinstance(value, _Power) else _Power((value, *(0,) * (count - 1)))
+
+    @property
+    def rates(self) -> list[Any]:
+        """The coefficients of the derivative of the series by the size of the step."""
+        return [(k + 1) * self.terms[k + 1] for k in range(len(self.terms) - 1)]
 
     def __add__(self, other: Any) -> "_Power":
         right = _Power.of(other, len(self.terms))
@@ -161,9 +170,8 @@ class _Power:
 
         For example, ``slope`` is 1/x if f is the logarithm.
         """
-        count = len(self.terms)
-        rates = [(k + 1) * self.terms[k + 1] for k in range(count - 1)]
-        return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(count - 1))))
+        rates = self.rates
+        return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
 
 
 def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
@@ -180,19 +188,17 @@ def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, 
 
     Coefficient n + 1 of each is computed from the coefficients up to n of the other one.
     """
-    count = len(x.terms)
+    rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
-    rates = [(k + 1) * x.terms[k + 1] for k in range(count - 1)]
-    for n in range(count - 1):
+    for n in range(len(rates)):
         s.append(_dot(c[: n + 1], rates[n::-1]) / (n + 1))
         c.append(sign * _dot(s[: n + 1], rates[n::-1]) / (n + 1))
     return _Power(tuple(s)), _Power(tuple(c))
 
 
 def _exponential(x: _Power) -> _Power:
-    terms = [iv.exp(iv.mpf(x.terms[0]))]
-    rates = [(k + 1) * x.terms[k + 1] for k in range(len(x.terms) - 1)]
-    for n in range(len(x.terms) - 1):
+    terms, rates = [iv.exp(iv.mpf(x.terms[0]))], x.rates
+    for n in range(len(rates)):
         terms.append(_dot(terms[: n + 1], rates[n::-1]) / (n + 1))
     return _Power(tuple(terms))
 
@@ -208,12 +214,12 @@ _OF_SERIES: dict[str, Callable[[_Power], _Power]] = {
     "sqrt": _power_root,
     "sin": lambda x: _turning(x, -1, ("sin", "cos"))[0],
     "cos": lambda x: _turning(x, -1, ("sin", "cos"))[1],
-    "tan": lambda x: _OF_SERIES["sin"](x) / _OF_SERIES["cos"](x),
+    "tan": lambda x: truediv(*_turning(x, -1, ("sin", "cos"))),
     "exp": _exponential,
     "log": lambda x: x.integrated(_log(iv.mpf(x.terms[0])), 1 / x),
     "sinh": lambda x: _turning(x, 1, ("sinh", "cosh"))[0],
     "cosh": lambda x: _turning(x, 1, ("sinh", "cosh"))[1],
-    "tanh": lambda x: _OF_SERIES["sinh"](x) / _OF_SERIES["cosh"](x),
+    "tanh": lambda x: truediv(*_turning(x, 1, ("sinh", "cosh"))),
     "atan": lambda x: x.integrated(_SCALAR["atan"](iv.mpf(x.terms[0])), 1 / (1 + x * x)),
 }
 
