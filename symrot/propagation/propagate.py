@@ -156,11 +156,9 @@ def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
         raise InputError(f"sensitivities: expected the state 'quaternion', got {state!r}")
     if torque is not None:
         raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
-    if switched(scene):
-        raise InputError(
-            "sensitivities: expected smooth torques, got formulas that jump or bend (abs, sign, ..), where the "
-            "derivatives of a motion jump"
-        )
+    from symrot.propagation.sensitivities.variables import require_smooth
+
+    require_smooth(scene)
 
 
 def _with_values(

@@ -14,10 +14,11 @@ from typing import Any
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
+from symrot.planning.general_structure import switched
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
-__all__ = ["ATTITUDE", "Variable", "difference", "read_variables"]
+__all__ = ["ATTITUDE", "Variable", "difference", "read_variables", "require_smooth"]
 
 ATTITUDE = "attitude"
 MOST_VARIABLES = 100
@@ -54,6 +55,17 @@ class Variable:
     value: Fraction
     moved: Callable[[Fraction], Scene] | None
     axis: int = 0
+
+
+def require_smooth(scene: Scene) -> None:
+    """Raise InputError unless the torques of a scene have derivatives: no table, and no formulas that jump or bend."""
+    if scene.table is not None:
+        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+    if switched(scene):
+        raise InputError(
+            f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "
+            "at which the derivatives of a motion jump"
+        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:

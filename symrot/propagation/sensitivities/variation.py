@@ -22,13 +22,13 @@ from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor,
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, node_from_json, node_to_json
-from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure, switched
+from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
-from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
@@ -69,7 +69,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     PropagationError
         If the motion cannot be followed to the last time.
     """
-    _refuse(scene)
+    require_smooth(scene)
     variables = read_variables(scene, keys)
     columns = _columns(scene, variables)
     values, slopes = _follow(scene, columns, times)
@@ -95,7 +95,7 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
     change at ``stop``; the rotation is about the body axes. ``stop`` may be before ``start``. InputError is raised if
     the torques have no derivatives: a table, or formulas that jump or bend.
     """
-    _refuse(scene)
+    require_smooth(scene)
     columns = _columns(scene, read_variables(scene, TRANSITION))
     if start != float(scene.span.start):
         values, _ = _follow(scene, columns, np.array([start]))
@@ -106,16 +106,6 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
         columns = _columns(scene, read_variables(scene, TRANSITION))
     values, slopes = _follow(scene, columns, np.array([stop]), start)
     return np.concatenate([slopes[0, :RATES], _rotation(values[:, RATES:], slopes[:, RATES:])[0]])
-
-
-def _refuse(scene: Scene) -> None:
-    if scene.table is not None:
-        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
-    if switched(scene):
-        raise InputError(
-            f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "
-            "at which the derivatives of a motion jump"
-        )
 
 
 # ------------------------------------------------------------------------------------------------ columns
