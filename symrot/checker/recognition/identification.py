@@ -38,7 +38,8 @@ from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = [
-    "Identification", "identified", "identify", "known_value", "named_parts", "pairings", "plain_name", "unit_of",
+    "Identification", "agree_in_unit", "identified", "identify", "known_value", "named_parts", "pairings", "plain_name",
+    "unit_of",
 ]  # fmt: skip
 
 UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
@@ -369,8 +370,7 @@ def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
     quaternion, have any letter, and the coordinates x, y and z of a point may be the components of any vector.
     """
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
-    units = [(UNIT_OF_NAME.get(mine), unit_of(other)) for mine, other in with_unit]
-    return all(None in unit or unit[0] == unit[1] for unit in units) and all(
+    return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
         _has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")
     )
 
@@ -477,6 +477,15 @@ def unit_of(name: str) -> str | None:
     if re.fullmatch(r"[ABC]", name):
         return "kg m^2"
     return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
+
+
+def agree_in_unit(known: str, own: str) -> bool:
+    """Return whether the symbol ``own`` of a claim may have the unit of the ``known`` symbol of a formula.
+
+    It may if books use the symbol for different quantities, or if no table states the unit of the known symbol.
+    """
+    unit, conventional = UNIT_OF_NAME.get(known), unit_of(own)
+    return unit is None or conventional is None or conventional == unit
 
 
 def _factor(

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Sequence
 from functools import lru_cache
 from itertools import islice
 
-from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, plain_name, unit_of
+from symrot.checker.recognition.identification import LETTERS, UNIT_OF_NAME, agree_in_unit, plain_name
 from symrot.checker.recognition.renaming import axes_of, is_consistent
 
 __all__ = ["absent_name", "is_fitting", "renaming_of_product", "renamings", "strangeness"]
@@ -178,8 +178,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     pattern = MORE_LETTERS.get(unit or "", LETTERS.get(unit or ""))
     if pattern is not None:
         return re.fullmatch(pattern, name) is not None
-    conventional = unit_of(own)
-    return unit is None or conventional is None or conventional == unit
+    return agree_in_unit(known, own)
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
