@@ -382,9 +382,9 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Search for a counterexample at random points that obey the hypotheses, and store it in ``case``.
+    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``.
 
-    Unlike :func:`nearby_witness`, it also tries points with algebraic coordinates and points in closed form.
+    It comes after :func:`nearby_witness`, which tries simple points.
     """
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
@@ -627,4 +627,7 @@ def _obstacle(ring: FormulaRing) -> str:
         )
     if ring.hypotheses:
         return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference, and no proof was found"
-    return "no rational point was found at which the sides differ, since an angle depends on other symbols"
+    return (
+        "no proof was found, and no rational point where the sides differ: an angle contains symbols that occur "
+        "elsewhere too, so that its sine and cosine cannot be chosen freely"
+    )
