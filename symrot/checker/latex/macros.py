@@ -52,9 +52,12 @@ LONGEST_NUMBER = 8
 SPELLED = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",
                                       "arcsin", "arccos", "arctan", "det")},
-    **{name: "\\operatorname{tr}" for name in ("tr", "Tr", "trace")},
+    **dict.fromkeys(("tr", "Tr", "trace"), "\\operatorname{tr}"),
 }  # fmt: skip
 """Function that people write without a backslash, as in ``2 sin\\theta cos\\theta`` -> the LaTeX for it."""
+
+ARGUMENTS = ("command", "letter", "number", "group", "font", "left", "fraction")
+"""Kinds of the tokens with which an argument without brackets begins."""
 
 MATRIX_MARKS = ("\\mathbf", "\\bm", "\\boldsymbol", "\\mathrm", "[", "\\bf", "{")
 
@@ -131,7 +134,7 @@ def _is_argument(after: Sequence[Token], function: str) -> bool:
     if SPELLED[function] != f"\\{function}":
         inside = rest[0] if first.text == "(" and rest else first
         return inside.text in MATRIX_MARKS or (inside.kind == "letter" and inside.text.isupper())
-    return first.text in ("(", "^") or first.kind in ("command", "letter", "number", "group", "font", "left", "fraction")
+    return first.text in ("(", "^") or first.kind in ARGUMENTS
 
 
 @cache
