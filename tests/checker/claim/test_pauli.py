@@ -51,7 +51,14 @@ def test_half_angles_rotate_a_matrix():
 
 
 @pytest.mark.parametrize(
-    "text", ["σ_x = E ε_x", "(σ_x - σ_y)²/4 + τ_xy² = R²", "v_i = i σ_x + σ_y", "σ_x + σ_y = 3", "σ_v^2 = σ_x^2 - σ_x σ_y + σ_y^2"]
+    "text",
+    [
+        "σ_x = E ε_x",
+        "(σ_x - σ_y)²/4 + τ_xy² = R²",
+        "v_i = i σ_x + σ_y",
+        "σ_x + σ_y = 3",
+        "σ_v^2 = σ_x^2 - σ_x σ_y + σ_y^2",
+    ],
 )
 def test_other_quantities_with_these_letters_are_not_false(text):
     assert symrot.check(text).verdict == "definition"
