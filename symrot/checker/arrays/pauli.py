@@ -35,9 +35,13 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
     The definitions give the matrices that occur, i and the unit matrix, each as a real 4 x 4 matrix. Names like sigma_x
-    are Pauli's matrices if the equation has two of them and i, or a product or power of them and no other name.
-    Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no definitions. So it
-    is if one of these names is in ``known``, the names that the claim defines.
+    mean Pauli's matrices in two kinds of equations: those with i and at least two such names, as ``sigma_x sigma_y = i
+    sigma_z``, and those with a product or power of such names and no names besides them and the unit matrix, as
+    ``sigma_x^2 = 1``.
+
+    In any other equation sigma_x is a number, such as a stress. The equation is then returned unchanged, with no
+    definitions. The same holds for an equation that uses a sigma or i which the claim itself defines (``known`` are the
+    names that it defines).
 
     Raises
     ------
