@@ -51,12 +51,11 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), exact except for one rounding.
+        """Return the values of k kernel parameters for each of n trajectories, shape (n, k), exact except for one
+        rounding.
 
-        Raises
-        ------
-        OverflowError
-            If a parameter exceeds the range of a double.
+        A kernel gets the scene's constants, and formulas in them, as these parameters. A parameter that depends on the
+        time at which the kernel's clock shows 0 is evaluated at ``epoch``, s.
         """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
