@@ -91,8 +91,8 @@ REFUSED = (
     (r"\sin\theta\phi = 1", 11), (r"\foo = 1", 1), (r"\sum_i m_i = 1", 1), (r"a = b = c", 7), (r"a \le b", 3),
     (r"a = b \text{ for all } x", 7), (r"\left.x\right|_0 = 1", 6), (r"\frac{d}{dt} R v = 0", 16), (r"\frac{d x}{d t^2} = 1", 1),
     (r"\begin{pmatrix}1&2\\3\end{pmatrix} = 1", 1), (r"\begin{cases}1\end{cases} = 1", 1), (r"(a = b)", 4), (r"a) = b", 2),
-    (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1), (r"{\rm tr}(R) = 1", 2),
     (r"\left(a] = 1", 13), (r"\left(a\right] = 1", 8), (r"\bar{x}(y) = 1", 8), (r"\mathrm\mathrm{tr} = 1", 8), (r"\mathrm{\theta t} = 1", 16), (r"\dot{ab}_1 = 1", 9),
+    (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1),
     (r"\int_0^1 x = 1", 12), (r"|x = 1", 4), (r"x2 = 1", 2), ("a = b\n\n§", 8), ("(" * 500 + "a = b", 31), (r"\sin -x = 1", 6),
 )  # fmt: skip
 
@@ -215,3 +215,11 @@ def test_letters_around_a_cross_are_vectors_where_the_text_shows_it(claim, verdi
 def test_powers_of_brackets_and_of_numbers_side_by_side_are_read():
     for claim in (r"\left(a^b\right)^c = a^{bc}", r"(2^n)^2 10^{a} 10^{b} = 2^{2n} 10^{a+b}"):
         assert symrot.check(claim).verdict in ("true", "conditional")
+
+
+@pytest.mark.parametrize(("latex", "verdict"), [
+    (r"\sin(2\theta) = 2 sin\theta cos\theta", "true"), (r"\theta = \arccos\frac{tr(R) - 1}{2}", "recognised"),
+    (r"{\rm tr}(AB) = \mathop{\mathrm{tr}}(BA)", "true"), (r"F = 2tr(t)\frac{1}{2}", "definition"),
+])  # fmt: skip
+def test_functions_spelled_with_letters_are_functions(latex, verdict):
+    assert symrot.check(latex, repair=False).verdict == verdict
