@@ -89,7 +89,8 @@ def latex_of(
     nodes = [node for side in relation[1:] for _, node in walk(side)]
     moving = {str(n.args[0].value) for n in nodes if n.value == "diff" and n.args[0].kind == "name"} - {*vectors}
     if moving:  # the rate of a quaternion is diff(q, t), since its components are the functions of time
-        relation = (relation[0], *(with_time(side, moving) for side in relation[1:]))
+        sign, left, right = relation
+        relation = sign, with_time(left, moving), with_time(right, moving)
     timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
     try:
         written = " = ".join(Writer(timed, vectors).formula(side) for side in relation[1:])

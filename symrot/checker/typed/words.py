@@ -109,7 +109,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         if (number or name) and not (index and not name):
             return tuple(piece for piece in (function, number, name + (index or "")) if piece), True
     if with_index := _WITH_INDEX.fullmatch(word):
-        *before, last = (*with_index[1], with_index[2])
+        before, last = str(with_index[1]), str(with_index[2])
         is_product = last in alone and all(letter in alone or letter in BEFORE_INDEX for letter in before)
         return ((*before, last), True) if is_product else ((), False)
     letters = tuple(_LETTER.findall(word))
