@@ -295,9 +295,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
     return title, " ".join(rest.split())
 
 
-_BEFORE_PLACE = (
-    r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-)
+_BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
 """The words before a place; "one axis" is the fixed axis of a body, and not its own axis."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
