@@ -1,9 +1,10 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
 Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the equation ``root^n = base``
-of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if
-it may have every value that these conditions allow. Two kinds are not free: a function of a symbol, such as tanh(x), and the sine and
-cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not used.
+of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if it
+may have every value that these conditions allow. Two kinds are not free: a function of a symbol, such as tanh(x), and
+the sine and cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not
+used.
 """
 
 from collections.abc import Iterator, Sequence
