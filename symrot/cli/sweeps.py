@@ -177,7 +177,7 @@ def _arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="address of a Dask scheduler whose workers to use instead, such as tcp://host:8786",
+        help="address of a Dask scheduler, such as tcp://host:8786: its workers compute the motions, not this machine",
     )
     parser.add_argument(
         "--chunk",

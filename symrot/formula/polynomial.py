@@ -79,7 +79,7 @@ class Polynomial:
         if not divisor:
             raise ZeroDivisionError("division by zero")
         if set(divisor.terms) != {()}:
-            raise ValueError("expected a number as the divisor of a polynomial, got a polynomial with generators")
+            raise ValueError("expected a number as the divisor of a polynomial, got a polynomial that is not constant")
         inverse = 1 / divisor.terms[()]
         return Polynomial({monomial: coefficient * inverse for monomial, coefficient in self.terms.items()})
 

@@ -1,7 +1,7 @@
 """Derivatives of a motion by initial values and constants, at the sample times, with labels."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,7 +50,8 @@ class Sensitivity(NamedTuple):
 class Sensitivities(Mapping[str, Sensitivity]):
     """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
 
-    A name of one component, such as ``omega_2``, is also accepted.
+    A name of one component, such as ``omega_2``, is also accepted. For an ensemble the arrays have one more axis, the
+    first, over the motions.
 
     Attributes
     ----------
@@ -95,7 +96,14 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return len(self.groups)
 
     def __repr__(self) -> str:
-        return f"<Sensitivities by {', '.join(self.variables)}: {len(self.omega)} samples>"
+        *motions, samples = self.omega.shape[:-2]
+        of = f"{motions[0]} trajectories, " if motions else ""
+        return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
+
+    def of(self, motion: int) -> "Sensitivities":
+        """Return the derivatives of one motion of an ensemble, which is number ``motion`` from 0."""
+        omega, quaternion, rotation = (array[motion] for array in (self.omega, self.quaternion, self.rotation))
+        return replace(self, omega=omega, quaternion=quaternion, rotation=rotation)
 
     @property
     def record(self) -> dict[str, Any]:

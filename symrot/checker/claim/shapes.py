@@ -123,10 +123,10 @@ def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape])
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return names that must be column vectors, since a matrix times the name is a vector; with the shape (3, 1).
+    """Return a map from each name that must be a column vector, since a matrix times it is a vector, to (3, 1).
 
-    In ``q' = (1 + [q] + q q^T) w`` this is w, since q is a vector. ``shapes`` are those of the names whose shape is
-    known.
+    In ``q' = (1 + [q] + q q^T) w``, where q is known to be a vector and [q] is its skew matrix, the result is {"w": (3,
+    1)}. ``shapes`` maps the names whose shape is known to their shapes.
     """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):

@@ -1,6 +1,7 @@
 """The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-For each quantity, words in the names of known formulas, and a pattern of symbols, tell which formulas are for it.
+Each quantity also tells which known formulas are for it: by phrases in the names of the formulas, and by a pattern for
+the symbols that stand for the quantity in them, such as E_k for the kinetic energy.
 """
 
 import re
@@ -256,10 +257,11 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the place of an axis in words, such as "about an end", or an empty text, and the words without it.
+    """Return the place of an axis in words, such as "about an end", and the words without it.
 
-    ``formulas`` are the phrases for the body in the names of formulas. A line such as "about a diameter" counts only if
-    the body has it.
+    The place is an empty text if the words name none. Lines of a body, such as "about a diameter", are places too. If
+    ``formulas`` is empty, all lines are tried. Otherwise only the lines of certain bodies are: those for which
+    ``formulas`` has the phrase that stands for the body in names of formulas, such as "a disk".
 
     Examples
     --------
@@ -287,9 +289,10 @@ _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|al
 
 
 def unused_words(words: str) -> str:
-    """Return the words that carry meaning in a text that is left over, without articles, prepositions and the like.
+    """Return the words with a meaning in ``words``, without articles, prepositions and the like.
 
-    If there are any, symrot does not understand all of what the user said.
+    ``words`` are what remains of the user's words once symrot has used the rest. If the result is not empty, symrot
+    does not understand all that the user wrote.
 
     Examples
     --------

@@ -242,7 +242,10 @@ class _Drawing:
         return True
 
     def univariate(self) -> bool:
-        """Solve an equation with a single unknown; return whether there is such an equation."""
+        """Solve the first of the remaining equations ``zeros`` with a single unknown, and store its value.
+
+        Return False if there is no such equation.
+        """
         for poly in self.zeros:
             places = occurring([poly])
             if len(places) == 1:
@@ -302,7 +305,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Add the cost of factoring a polynomial of the given degree; raise _DeadEnd if all costs exceed the budget.
+        """Add the cost of factoring a polynomial of this degree; raise _DeadEnd if the sum of costs exceeds the budget.
 
         Only a polynomial over an algebraic field, with irrational numbers, costs anything.
         """
@@ -313,9 +316,10 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root of ``factor``, which has only the unknown with the number ``place``.
+        """Return an irrational real root of ``factor``, which contains one unknown, with the index ``place``.
 
-        The root is added to the field, and all values move to that field. Raise _DeadEnd if there is no suitable root.
+        The root is added to the number field, and the values of the other unknowns are converted to the new field.
+        Raise _DeadEnd if no real root has the sign assumed for the unknown, or if the new field would be too large.
         """
         degree = factor.degrees()[place]
         numbers = [

@@ -189,7 +189,11 @@ def _has_values(node: Node) -> bool:
 
 
 def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a letter, a length or another scalar call, of which a square may be missing."""
+    """Return whether a part is a single name or call with a scalar value, so that a lost square may have stood on it.
+
+    Names and calls of functions are meant, and among the calls with vectors or matrices only dot, det and trace. A sum
+    such as a + b is not. ``matrices`` tells whether a node is a matrix.
+    """
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
     return not matrices(node) or node.value in ("dot", "det", "trace")
