@@ -5,7 +5,7 @@ constant that varies in the ensemble is a parameter; the derivatives of a motion
 The equations are those of :mod:`symrot.propagation.sensitivities.variation`, with one motion in each lane.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,6 @@ from symrot.build import cache as library
 from symrot.ensemble import lanes
 from symrot.ensemble.motions import Problem
 from symrot.ensemble.numbers import Numbers
-from symrot.ensemble.variation import Variation
 from symrot.errors import InputError, PropagationError
 from symrot.formula.program import Program
 from symrot.planning.general_structure import constants_of
@@ -48,8 +47,9 @@ from symrot.propagation.sensitivities.variation import (
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.stepping import Floats
 from symrot.results.sensitivity import Sensitivities
+from symrot.scene.scene import Scene
 
-__all__ = ["follow_sensitivities"]
+__all__ = ["follow_sensitivities", "read_columns"]
 
 SIZE = len(STATES)
 BLOCK = 1 << 22  # numbers of one block of motions that are in memory beside the result: 32 MB
@@ -78,11 +78,11 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
         in the ensemble under another name.
     """
     variation, scene = problem.variation, problem.variation.scene
-    require_smooth(scene)
-    variables = read_variables(scene, keys)
-    columns = columns_of(scene, variables)
-    for column in columns:
-        _require_own(variation, column)
+    own = [float(rate) for rate in scene.initial.omega_b]
+    varying = [*variation.columns, *(["omega"] if (variation.omega != own).any() else [])]
+    variables, columns = read_columns(
+        scene, keys, [*varying, *([] if variation.quaternion is None else ["quaternion"])]
+    )
     count, samples = len(variation), problem.times.shape[-1]
     omega, quaternion, rotation = (np.full((count, samples, size, len(columns)), np.nan) for size in (3, 4, 3))
     messages = [""] * count
@@ -105,27 +105,39 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
 
 
-def _require_own(variation: Variation, column: Column) -> None:
+def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
+    """Return the variables that the keys of a request name, and the dependence of the scene on each of them.
+
+    ``varying`` are the names of the constants that vary in the ensemble, with ``omega`` and ``quaternion`` if the
+    initial states do. The errors are those of :func:`follow_sensitivities`.
+    """
+    require_smooth(scene)
+    variables = read_variables(scene, keys)
+    columns = columns_of(scene, variables)
+    for column in columns:
+        _require_own(column, varying)
+    return variables, columns
+
+
+def _require_own(column: Column, varying: Collection[str]) -> None:
     """Raise InputError if a variable changes a number that varies in the ensemble under another name.
 
-    An example is the variable ``gravity`` while ``weight`` has a value of its own in each motion.
+    An example is the variable ``gravity`` while ``weight`` has a value of its own in each motion, so that ``varying``
+    contains ``weight``.
     """
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
         return
-    own = {name for name in column.constants if name in variation.columns}
+    moved = set(column.constants)
     if len(column.constants) == 1 and column.constants.get(_constant(variable)) == 1:
-        own.clear()
-    moved = [slope != 0 for slope in column.start]
-    scene = [float(rate) for rate in variation.scene.initial.omega_b]
-    if any(moved[:RATES]) and (variation.omega != scene).any():
-        own.add("omega")
-    if any(moved[RATES:]) and variation.quaternion is not None:
-        own.add("quaternion")
+        moved.clear()
+    moved |= {"omega"} if any(column.start[:RATES]) else set()
+    moved |= {"quaternion"} if any(column.start[RATES:]) else set()
+    own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
-            f"sensitivities: expected variables that change nothing which varies in the ensemble, but {variable.name} "
-            f"changes {', '.join(sorted(own))}; name the constants that vary as variables"
+            f"sensitivities: expected variables that change nothing which varies between the motions, but "
+            f"{variable.name} changes {', '.join(own)}; name the constants that vary as variables"
         )
 
 

@@ -170,12 +170,12 @@ def generator(name: str | int) -> Polynomial:
 
 
 def cosine(angle: str) -> Polynomial:
-    """Return the polynomial that is the cosine of the angle with the name ``angle``, a generator of its own."""
+    """Return the polynomial for the cosine of an angle: a single generator, with the name "cos(``angle``)"."""
     return generator(f"cos({angle})")
 
 
 def sine(angle: str) -> Polynomial:
-    """Return the polynomial that is the sine of the angle with the name ``angle``, a generator of its own."""
+    """Return the polynomial for the sine of an angle: a single generator, with the name "sin(``angle``)"."""
     return generator(f"sin({angle})")
 
 

@@ -192,9 +192,9 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
     where : str
         File and key of the text, for error messages.
     switching : bool
-        Whether the functions of :data:`SWITCHING` are allowed too, and comparisons, ``and``, ``or`` and ``not`` in the
-        condition of ``where``. In the tree these are calls of ``less``, ``and``, ``or`` and ``not``. See
-        :mod:`symrot.formula.switches`.
+        Whether the functions of :data:`SWITCHING` are allowed too. One of them is ``where(condition, a, b)``, whose
+        condition may have comparisons, ``and``, ``or`` and ``not``; in the tree these are calls of ``less``, ``and``,
+        ``or`` and ``not``. See :mod:`symrot.formula.switches`.
 
     Raises
     ------

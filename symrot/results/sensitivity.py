@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from symrot.results.labels import Labelled
 from symrot.results.tables import BY
 
-__all__ = ["Sensitivities", "Sensitivity", "restored"]
+__all__ = ["OUTPUTS", "Sensitivities", "Sensitivity", "quotient_unit", "restored"]
 
 OUTPUTS = {  # quantity -> components, unit, frame, meaning
     "omega": (("omega_1", "omega_2", "omega_3"), "rad/s", "body", "angular velocity, body components"),
@@ -125,11 +125,13 @@ class Sensitivities(Mapping[str, Sensitivity]):
                 names = tuple(f"{component}{BY}{variable}" for component in components)
                 values = getattr(self, quantity)[..., number]
                 text = f"derivative of the {meaning}, by {variable}"
-                items.append(Labelled(f"{quantity}{BY}{variable}", values, names, _per(own, unit), frame, text))
+                items.append(
+                    Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
+                )
         return items
 
 
-def _per(unit: str, other: str) -> str:
+def quotient_unit(unit: str, other: str) -> str:
     """Return the unit of a derivative: ``unit``, of the quantity, divided by ``other``, of the variable.
 
     If ``other`` is empty (unknown), the result ends in words: "(rad/s) per unit of the parameter".

@@ -210,9 +210,7 @@ class PiecesPart(OpenFunctionsPart):
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
         if self.source[token.start] == "∂":
-            raise self.fail(
-                "∂ only in a derivative such as ∂f/∂x, which can also be written as diff(f, x),", token.start
-            )
+            raise self.fail("∂ only in a derivative such as ∂f/∂x, for which you may write diff(f, x),", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
