@@ -119,7 +119,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
         yield "with a radius of gyration"  # r is the radius of the body
     own_place = (meaning.place if meaning else "") or context.place
     if own_place in LINES and (" of a " in name or place):
-        yield from () if _is_along(name, own_place) else (place or "about another axis",)
+        yield from () if _is_along(name, own_place) else (_where_else(place, own_place, name),)
     elif own_place and place and place != own_place and place_exists(own_place):
         yield place
     elif own_place == place and _is_radial(name, quantity):
@@ -158,6 +158,16 @@ def _is_along(name: str, line: str) -> bool:
         for body, (place, axes) in bodies.items()
         if body in bodies_of_formula(name)
     )
+
+
+def _where_else(place: str, line: str, name: str) -> str:
+    """Return where the axis of the formula named ``name`` is, in words; it is not along a ``line`` of its body.
+
+    ``place`` is the place in the name. It is no answer if the line passes through it too.
+    """
+    _, bodies = LINES[line]
+    places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
+    return place if place and place not in places else "about another axis"
 
 
 def _is_radial(name: str, quantity: str) -> bool:

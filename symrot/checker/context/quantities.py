@@ -164,21 +164,24 @@ QUANTITIES: tuple[Quantity, ...] = (
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
 """Words that name more than one quantity -> what to write instead."""
 
-CENTRE, CORNER, RIM, SURFACE = (
-    "about the centre of mass", "about a corner", "about a point of the rim", "about a point of the surface",
+CENTRE, END, CORNER, RIM, SURFACE = (
+    "about the centre of mass", "about an end", "about a corner", "about a point of the rim",
+    "about a point of the surface",
 )  # fmt: skip
 PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    (CENTRE, ("centre", "centre of mass", "centroid", "central axis"),
+    (CENTRE, ("centre", "centre of mass", "centroid", "central axis", "centre of gravity", "geometric centre",
+              "middle", "midpoint", "middle point", "cm", "com", "c.m."),
      ("about its centre of mass", "about their centre of mass", "of given density", "radius of gyration of a")),
-    ("about an end", ("end", "one end", "centre of an end", "centre of one end"),
+    (END, ("end", "ends", "end point", "endpoint", "centre of an end", "centre of one end"),
      ("about an end", "about the centre of an end")),
     ("about the tip", ("tip", "apex", "vertex"), ("about its tip",)),
     ("about the base", ("base", "centre of the base", "centre of the flat face", "bottom", "centre of the bottom"),
      ("about the centre of the base", "about the centre of the flat face", "about the centre of the bottom")),
     (CORNER, ("corner", "first corner", "right corner"),
      ("about a corner", "about the first corner", "about the corner at (0, 0)")),
-    (RIM, ("rim", "point of its rim", "point of the rim"), ("about a point of its rim",)),
-    (SURFACE, ("point of its surface", "point of the surface"),
+    (RIM, ("rim", *(f"point {word} {place}" for word in ("of", "on") for place in ("rim", "edge", "circumference"))),
+     ("about a point of its rim",)),
+    (SURFACE, ("point of surface", "point on surface"),
      ("about a point of its surface",)),
     ("about the middle of a side", ("middle of a side",), ("about the middle of a side",)),
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
@@ -198,7 +201,8 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
     ),
     "about its axis": (
         ("axis", "symmetry axis", "axis of symmetry", "own axis", "longitudinal axis", "figure axis", "geometric axis",
-         "cylinder axis", "polar axis", "z axis", "z-axis"),
+         "cylinder axis", "polar axis", "z axis", "z-axis", "central axis", "axis of revolution",
+         "axle"),
         {**dict.fromkeys(ROUND, (CENTRE, "z")), **dict.fromkeys(BALLS, (CENTRE, "xyz")),
          "a conical shell": ("about the tip", "z")},
     ),
@@ -210,8 +214,13 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("tangent", "tangent line", "tangential axis", "axis tangent to it"),
         {"a disk": (RIM, "yz"), "a ring": (RIM, "yz"), "a sphere": (SURFACE, "xy")},
     ),
+    "about the centre of an end face": (
+        ("base", "centre of base", "centre of one base", "centre of bottom", "centre of one face",
+         "centre of end face"),
+        {"a cylinder": (END, "xyz")},
+    ),
     "about an edge": (
-        ("edge", "one edge", "side", "one side", "one of edges", "one of sides"),
+        ("edge", "side", "edges", "sides", "hinge", "hinges"),
         {"a box": (CORNER, "xyz"), "a plate": (CORNER, "xy")},
     ),
     "about its base": (
@@ -235,6 +244,7 @@ _SPELLINGS = (
     (r"\b(rate|quaternion|parameter|torque|rotation|couple|angle)s\b", r"\1"), (r"\baxes\b", "axis"),
     (r"\b(with|in|by) (the )?(euler )?angles? phi,? theta,?( and)? psi\b|\bat (the )?(finite )?angle theta\b", " "),
     (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
+    (r"\b(with )?\s*(centred|centre) +(at|on|in) +(origin|o)\b", "about centre"),
     (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
 )  # fmt: skip
 
@@ -274,7 +284,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
         (match, title)
         for title, phrases in (*lines, *titled)
         for phrase in phrases
-        if (match := re.search(rf"(through|about|hung at|hung from|at) {plain_words(phrase)}{_END_OF_PLACE}", words))
+        if (match := re.search(rf"{_BEFORE_PLACE} {plain_words(phrase)}{_END_OF_PLACE}", words))
     ]
     if not places:
         return "", words
@@ -284,6 +294,9 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
         rest = re.sub(r"\babout (axis )?(?=\s|$)", " ", rest, count=1)
     return title, " ".join(rest.split())
 
+
+_BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
+"""The words before a place; "one axis" is the fixed axis of a body, and not its own axis."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 
