@@ -52,8 +52,8 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
-CALLS_FOR_ARRAYS = ("qmul(", "eye(")
-"""Calls that answers have only if the claim has one of them."""
+CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
+"""Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
 
 
 AS_TYPED = ("degrees",)
