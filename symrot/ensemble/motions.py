@@ -169,9 +169,10 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Compute motions under torques with jumps or kinks one by one; write their samples into the arrays.
+    """Compute motions under torques with jumps or kinks one by one; return their methods, messages and costs.
 
-    ``stepped`` contains the indices of these trajectories. The result also holds their methods, messages and costs.
+    ``stepped`` contains the indices of these trajectories. Their samples are written into the rows of ``omega`` and
+    ``quaternion``.
     """
     from symrot.propagation.propagate import propagator
 
@@ -276,7 +277,8 @@ class _Stepped:
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Write the angular velocity and the attitude that follow from ``states`` into ``omega`` and ``quaternion``.
 
-        ``states`` has shape (n, m, N): a plan may use fewer states than the seven of omega and q, such as one angle.
+        ``states`` has shape (n, m, N), for n trajectories, m samples and the plan's N states: a plan may use fewer
+        states than the seven of omega and q, such as one angle.
         """
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))

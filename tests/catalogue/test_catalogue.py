@@ -342,7 +342,7 @@ def test_one_step_on_the_command_line(form, start, capsys):
         (["--all", "--step", "2"], "expected a NAME"),
         (["heavy_top", "--step", "two"], "invalid int"),
         (["--all", "--format", "html"], "expected a folder, -o DIR"),
-        (["--check", "--format", "latex"], "--check compares the Markdown pages"),
+        (["--check", "--format", "latex"], "--check compares Markdown pages only"),
         (["--all", "-o", __file__], "expected -o with a folder for the pages, got the file"),
         (["--all", "--format", "html", "-o", __file__], "expected -o with a folder for the pages, got the file"),
         (["poinsot", "-o", __file__], "expected -o with a folder for the pages, got the file"),
