@@ -335,8 +335,8 @@ def test_one_step_on_the_command_line(form, start, capsys):
     "words, complaint",
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
-        (["heavy_top", "--detail"], "expected --step N"),
-        (["heavy_top", "poinsot"], "expected a folder, -o DIR, and no --step"),
+        (["heavy_top", "--detail"], "--detail needs --step N"),
+        (["heavy_top", "poinsot"], "several NAMEs need a folder for their pages, -o DIR"),
         (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),
