@@ -53,8 +53,8 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
-CALLS_FOR_ARRAYS = ("qmul(", "eye(")
-"""Calls that answers have only if the claim has one of them."""
+CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
+"""Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
 
 
 AS_TYPED = ("degrees",)
@@ -181,7 +181,8 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 
     Such an equation holds for certain values of its letters and is no identity, so its verdict is "definition". If the
     text ends with several sides of numbers with units, as ``F = m a = 2 kg * 3 m/s^2 = 6 N`` does, this end is judged
-    by itself; if it is false, the text is false. Any other text has the given ``verdict``.
+    by itself; if it is false, the text is false. Any other text, and one that is true for all values of its letters,
+    has the given ``verdict``.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")

@@ -78,7 +78,7 @@ class Cursor(ABC):
     plain : bool
         Whether the formula uses notation of plain text, such as ``2x`` or ``sin x``, which is not SymPy syntax.
     doubts : list of Doubt
-        The ambiguous places of the text, with both meanings possible.
+        The ambiguous places that were met so far.
     notes : list of str
         Sentences about the way in which the formula is read.
     timed : set of str
