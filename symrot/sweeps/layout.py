@@ -76,9 +76,9 @@ class Header:
 
 
 class Store(Protocol):
-    """The interface of stores for the results of a sweep.
+    """The interface of stores for the results of a sweep, which are written in chunks of trajectories.
 
-    Even if the process is killed, a chunk is missing or complete.
+    A chunk is stored as a whole: if the process is killed while it writes, the chunk counts as missing.
     """
 
     header: Header

@@ -39,7 +39,7 @@ class MemoryStore:
 
     @property
     def alone(self) -> str:
-        """Always empty, because results in memory are used only by the sweep that computed them."""
+        """Return an empty text: this store has the values of the outputs, not only statistics of them."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -67,8 +67,8 @@ class MemoryStore:
     def finish(self, tables: list[Table], alone: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
-        these values are then removed. If it is empty, the values stay.
+        If ``alone`` is not empty, the values of the outputs are removed. It is a text that describes the statistics,
+        for stores that write it into a file; this store does not need it.
         """
         self.tables = tables
         if alone:

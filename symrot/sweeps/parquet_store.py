@@ -73,7 +73,7 @@ class ParquetStore:
 
     @property
     def alone(self) -> str:
-        """Always empty, because this store always has the values of the outputs."""
+        """Return an empty text: this store has the values of the outputs, not only statistics of them."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -158,7 +158,9 @@ class ParquetStore:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
             write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
         if alone:
-            raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
+            raise InputError(
+                "keep: expected 'all' for a Parquet file, got 'statistics'; write FILE.zarr to store statistics only"
+            )
 
     def dataset(self) -> Any:
         """Return the results as a pandas DataFrame."""

@@ -178,7 +178,8 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
     for name, slope in first.items():
         if abs(slope - second[name]) > AGREEMENT * max(abs(slope), abs(second[name])):
             raise InputError(
-                f"sensitivities: {name} of the equations does not depend smoothly on {variable.name} at its value"
+                f"sensitivities: expected {variable.name} with a value at which the equations have a derivative, but "
+                f"their constant {name} has a kink or a jump there; change the value slightly"
             )
     return {name: slope for name, slope in first.items() if slope}
 
