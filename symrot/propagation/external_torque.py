@@ -145,10 +145,10 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Prepare for a motion between the times ``low`` and ``high``, s: forget an exception of the function in the
-        last motion.
+        """Prepare for a motion from ``low`` to ``high``, s: forget an exception of the function in the last motion.
 
-        Other torques refuse times for which they have no values here; the domain of a function is not known.
+        The method of a torque that is a table refuses times outside the table here. The domain of a function is not
+        known, so all times are accepted.
         """
         self.error = None
 
@@ -223,9 +223,7 @@ class _Table(TorqueSource):
         self.user, self.knots = _pieces(t, values, switching)
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the C function that interpolates the table; it was compiled into ``library`` with the kernel of the
-        motion.
-        """
+        """Return the C function that interpolates the table; ``library``, with the kernel, contains it."""
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:

@@ -33,8 +33,9 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 class SwitchedSystem:
     """All switching functions (sign, abs, ..) in the torques of a plan, and the equations between switches.
 
-    Such a motion is a regime. One regime has the switching functions as free numbers. While the motion slides, the
-    arguments of some functions stay at zero; each set of such functions has a regime of its own.
+    Between two switches the motion is smooth; its equations, in which numbers replace the switching functions, are a
+    regime. While the motion slides, the arguments of some functions stay at zero, and these functions are unknowns:
+    each set of such functions has a regime of its own. The empty set has one too.
     """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
