@@ -130,7 +130,7 @@ def header_of(job: Job, rows: int | None = None) -> Header:
         Variable(output.name, (TIME,) if output.is_series else (), output.unit, output.frame, output.meaning)
         for output in job.outputs
     ]
-    samples = max(1, len(job.times))
+    samples = max(1, len(job.times)) * (1 + len(job.sensitivities))
     chosen = rows or max(1, min(max(ROWS[0], design.count // CHUNKS), ROWS[1], LARGEST_CHUNK // samples))
     return Header(_identity(job), job.scene.name, design.names, (*inputs, *outputs), design.count, job.times, chosen)
 

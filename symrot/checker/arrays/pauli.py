@@ -38,15 +38,15 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
     The definitions give the matrices that occur, i and the unit matrix, each as a real 4 x 4 matrix. Names like sigma_x
-    are Pauli's matrices in each of these equations:
+    mean Pauli's matrices in each of these equations:
 
-    - it has two of them and i;
-    - it has a product or power of them and no other name;
+    - it has i and at least two of the names, as ``sigma_x sigma_y = i sigma_z``;
+    - it has a product or power of the names and no other name, as ``sigma_x^2 = 1``;
     - it has the trace or the determinant of one, as ``det(sigma_x) = -1``;
     - it gives the square of a sum of them without new letters, as ``(a sigma_x + b sigma_y)^2 = a^2 + b^2``.
 
-    Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no definitions. So it
-    is if one of these names is in ``known``, the names that the claim defines.
+    In any other equation sigma_x is a number, such as a stress. The equation is then returned unchanged, with no
+    definitions. The same holds if the claim itself defines one of the names or i (``known`` are the names it defines).
 
     Raises
     ------

@@ -160,8 +160,9 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
+        """Record an ambiguous place of the text; return whether its key is among ``self.flips``.
 
+        If so, the parser must give the place its less usual meaning. The key is (``kind``, start of ``item``), where
         ``kind`` is the kind of ambiguity. The place starts at ``item`` and ends at the position ``stop``.
 
         Raises

@@ -176,7 +176,10 @@ class _Expansion:
         return end + 1 if inside and is_number and rest[end + 1].kind in ("end", "line", "close") else 0
 
     def longer(self, command: Token) -> Iterator[Token]:
-        """Yield the tokens of the longer form of a command; the command's arguments are at the cursor."""
+        r"""Yield the tokens for which a command stands: those of ``\frac{dx}{dt}`` for ``\dv{x}{t}``.
+
+        The command's arguments are at the cursor. The table ``MACROS`` has the text for each such command.
+        """
         forms = MACROS[command.text]
         if self.at("*"):
             self.place += 1
@@ -199,7 +202,7 @@ class _Expansion:
         return self.place < len(self.pieces) and self.pieces[self.place].text in texts
 
     def order(self) -> Sequence[Token]:
-        """Parse the order of a derivative in square brackets, ``[2]``; return its tokens, none if there is no order."""
+        """Parse the order of a derivative, ``[2]``, and return the tokens in the brackets; [] without brackets."""
         if not self.at("["):
             return []
         texts = [piece.text for piece in self.pieces[self.place :]]
