@@ -131,10 +131,7 @@ class Drawing(Protocol):
     """Protocol of a drawing that can be written as SVG, the format of the figures on pages."""
 
     def svg(self, title: str, description: str) -> str:
-        """Return the drawing as the text of an SVG file;
-
-        ``title`` and ``description`` are its words for screen readers.
-        """
+        """Return the drawing as the text of an SVG file; screen readers speak its ``title`` and its ``description``."""
 
 
 @dataclass(frozen=True)

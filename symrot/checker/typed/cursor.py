@@ -136,7 +136,7 @@ class Cursor(ABC):
     def deeper(self) -> None:
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
+            raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
         """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
