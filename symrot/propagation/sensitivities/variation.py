@@ -2,9 +2,9 @@
 
 The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
 in common steps. Its equations assume nothing about the numbers of the scene that a variable can change:
-a derivative by a moment of inertia needs the equations of a body without symmetry. A column consists
-of the derivatives by one variable. For the integration it is multiplied by a power of two near the size of the
-variable, so that it is about as large as the states.
+a derivative by a moment of inertia needs the equations of a body without symmetry. The derivatives of all states by one
+variable are a column of the matrix of derivatives. For the integration each column is multiplied by a power of two near
+the size of its variable, so that it is about as large as the states.
 """
 
 import json
@@ -344,10 +344,11 @@ def _follow_some(scene: Scene, columns: Sequence[Column], times: Floats, begin: 
 
 
 def _size(scene: Scene, column: Column) -> float:
-    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable.
+    """Return a power of two near the value of the variable by which the derivatives in ``column`` are taken.
 
-    The derivatives are then about as large as the states, so that one error control fits both. For a component of omega
-    the largest component is used; for a rotation, or a variable that is zero, the result is 1.
+    The column is multiplied by it before the integration. The derivatives are then about as large as the states, so
+    that one error control fits both. For a component of omega the largest component is used; for a rotation, or a
+    variable that is zero, the result is 1.
     """
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
