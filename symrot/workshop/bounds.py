@@ -254,9 +254,10 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the lines that `symrot bound` prints about the largest box;
+    """Return the lines that `symrot bound --target` prints: ranges of the inputs on which no error exceeds the target.
 
-    ``resized`` is the data of :func:`target_facts`.
+    ``resized`` is the data of :func:`target_facts`. The ranges are those of the user, all made wider or narrower by one
+    factor, as far as the target allows.
     """
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
