@@ -18,8 +18,8 @@ def derive() -> Derivation:
         source="Whittaker & Watson, *A Course of Modern Analysis*, 4th ed., chapters 21 and 22",
         about=(
             "This derivation defines the elliptic functions by their derivatives and proves the properties that the "
-            "exact motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the argument "
-            "of a theta function. Each property follows from the properties before it, without tables."
+            "exact motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the "
+            "argument of a theta function. Each property follows from the properties before it, without tables."
         ),
     )
     _definition(d)
