@@ -1106,7 +1106,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Store intermediate quantities and outputs in ``names``; return a map from place, such as ``q[2]``, to input."""
+        """Store intermediate quantities and outputs in ``names``; return a map from place (``q[2]``) to input."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
