@@ -129,6 +129,9 @@ COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
 CROSS_PRODUCT = "cross product v x n"
 """The end of the names of the known cross product and of its components."""
 
+ENTRY = r"[RrACQ]_?([1-3]{2})"
+"""Pattern of the names of the entries of a rotation matrix."""
+
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 """The sequences of Euler angles that books use most, in this order."""
 
@@ -212,7 +215,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
-    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
         return True
     if words is None:
         return max(count, near.array_letters) >= MANY_LETTERS
@@ -249,6 +252,15 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
         and bool(rest)
         and place[2] in COMPONENTS.get(word, "")
     )
+
+
+def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
+    """Return whether the name of a quantity, such as R_12, is that of an entry, and ``near`` is this entry of a rotation.
+
+    The entry must have several terms: a single product may be that of another matrix.
+    """
+    own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
+    return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
 
 
 def has_terms(formula: Node) -> bool:
@@ -310,7 +322,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
         return False
-    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
+    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
     letters = [*known.mapping.values()] or [*names_in(named.formula)]
