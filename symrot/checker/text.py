@@ -27,6 +27,7 @@ from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
+from symrot.checker.special_cases import for_complex_numbers, for_special_directions
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
@@ -180,7 +181,8 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 
     Such an equation holds for certain values of its letters and is no identity, so its verdict is "definition". If the
     text ends with several sides of numbers with units, as ``F = m a = 2 kg * 3 m/s^2 = 6 N`` does, this end is judged
-    by itself; if it is false, the text is false. Any other text has the given ``verdict``.
+    by itself; if it is false, the text is false. Any other text, and one that is true for all values of its letters,
+    has the given ``verdict``.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
@@ -360,6 +362,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = for_special_directions(claim, for_complex_numbers(claim, verdict)) if plain else verdict
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):

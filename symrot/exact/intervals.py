@@ -49,7 +49,7 @@ def _refuse(outside: bool) -> None:
 def _root(x: Any) -> Any:
     _refuse(x.b < 0)
     if not x.a >= 0:
-        raise ValueError("expected a nonnegative number under a root")
+        raise ValueError(f"expected a number under a root that is proven nonnegative, got one between {x.a} and {x.b}")
     return iv.sqrt(x)
 
 
@@ -136,7 +136,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
     -------
     interval or None
         None if the formula is not proven to be real, if a function is unknown, or if too many digits would be needed.
-        Terms that SymPy has cancelled are not checked.
+        SymPy cancels terms such as ``log(x) - log(x)`` when it builds a formula; whether they are real is not checked.
     """
     iv.dps = DIGITS
     try:

@@ -98,7 +98,9 @@ class _Reader:
     def expression(self, binding: int = 0) -> Node:
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels", self.tokens[self.index][2])
+            raise self.fail(
+                f"at most {DEEPEST_NESTING} nested levels of brackets and arguments", self.tokens[self.index][2]
+            )
         left = self.operand()
         while _BINDING.get(self.peek(), 0) > binding:
             _, mark, position = self.next()

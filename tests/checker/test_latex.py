@@ -105,7 +105,7 @@ def test_what_is_not_understood_is_refused_with_its_place(latex, position):
 
 @pytest.mark.parametrize(("latex", "words"), [
     (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "two vectors"),
-    (r"\theta'(3) = 0", "a function that is declared"), (r"m'(t) = 0", "a function that is declared"), (r"\dot{m} = 0", "function of time"), (r"\vec v = 0", "'v'"),
+    (r"\theta'(3) = 0", "a declared function"), (r"m'(t) = 0", "a declared function"), (r"\dot{m} = 0", "to be declared as a function of t"), (r"\vec v = 0", "v to be declared as a vector"),
 ])  # fmt: skip
 def test_vectors_are_refused_where_they_make_no_sense(latex, words):
     with pytest.raises(InputError, match=words):
@@ -150,7 +150,7 @@ def test_vector_formulas_of_papers(latex, text):
 @pytest.mark.parametrize(("latex", "words"), [
     (r"\begin{aligned} a &= b \\ c &= d\end{aligned}", "one equation instead of the environment aligned"), (r"\begin{align*}a&=b\end{align*}", "the environment align"),
     (r"a &= b", "at position 3"), (r"a = b \\ c = d", "at position 7"), (r"\Delta\theta = \omega", "for a change"),
-    (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a function that is declared"), (r"\theta(0) = 1", "a function that is declared"),
+    (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a declared function"), (r"\theta(0) = 1", "a declared function"),
     (r"x^{(2)} = 1", "a power like x^2"), (r"a \pm b = c", "at position 3"), (r"\left(\frac{dL}{dt}\right)_{space} = N", "operator or '='"),
 ])  # fmt: skip
 def test_what_reads_in_two_ways_in_papers_is_refused(latex, words):

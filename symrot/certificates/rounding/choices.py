@@ -36,8 +36,9 @@ def decide_branches(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Write the branch of a condition into ``decision`` for all boxes on which only one branch is possible.
 
-    Return two Boolean arrays: on which boxes the branch that was decided before is impossible, and on which boxes both
-    branches are possible.
+    ``a`` and ``b`` are intervals of the two compared numbers. ``decision`` holds 1 if the relation holds on a box, 0 if
+    not, -1 if that is open; only -1 is replaced. Return two Boolean arrays: on which boxes the branch in ``decision``
+    was chosen before this call but is impossible, and on which boxes both branches are possible.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
@@ -80,7 +81,7 @@ def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: l
 
 
 def _middle(one: Node, other: Node) -> int | None:
-    """Return the node p if the two nodes are p + q and p - q, in any order; otherwise None."""
+    """Return the index of the node p if one node is p + q and the other p - q; otherwise None."""
     if (one[0], other[0]) == ("sub", "add"):
         one, other = other, one
     if (one[0], other[0]) != ("add", "sub") or set(one[1:]) != set(other[1:]):

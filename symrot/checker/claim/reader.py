@@ -528,14 +528,26 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors."""
-    texts = [token.text for token in tokens if token.kind != "end"]
-    for sides in (texts, texts[::-1]):
-        first, dot, second, sign, *rest = [*sides, *[""] * 4]
-        names = [word for word in rest if word and word not in ("*", "·", "|", "(", ")")]
-        is_product = dot == "·" and sign in ("=", "==") and is_usual_vector(first) and is_usual_vector(second)
+    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors.
+
+    In ``F·d = F d`` they are vectors too, if books usually mean vectors by them: of numbers, nobody would say this.
+    """
+    sides: list[list[str]] = [[]]
+    for token in tokens:
+        if token.text in ("=", "=="):
+            sides.append([])
+        elif token.kind != "end":
+            sides[-1].append(token.text)
+    for product, lengths in [*pairwise(sides), *pairwise(sides[::-1])]:
+        if len(product) != 3 or product[1] != "·" or product[0] == product[2]:
+            continue
+        first, _, second = product
+        names = [word for word in lengths if word not in ("*", "·", "|", "(", ")")]
         has_lengths = {first, second} <= {*names} or first + second in names
-        if is_product and first != second and len(names) <= 4 and "cos" in names and has_lengths:
+        has_cosine = "cos" in names and len(names) <= 4 and first.isalpha() and second.isalpha()
+        has_vectors = is_usual_vector(first) and is_usual_vector(second)
+        is_bare = lengths in ([first, second], [second, first], [first + second]) and has_vectors
+        if has_lengths and (is_bare or (has_cosine and (has_vectors or len(first) == len(second) == 1))):
             yield from (first, second)
 
 

@@ -200,7 +200,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the number ``place``.
+    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the index ``place``.
 
     a does not contain the generator.
     """

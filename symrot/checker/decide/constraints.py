@@ -1,9 +1,10 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
 Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the equation ``root^n = base``
-of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if
-nothing more restricts its value. Two kinds are not free: a function of a symbol, such as tanh(x), and the sine and
-cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not used.
+of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if it
+may have every value that these conditions allow. Two kinds are not free: a function of a symbol, such as tanh(x), and
+the sine and cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not
+used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -39,8 +40,8 @@ class Constraints:
         Further polynomials that are >= 0: formulas under even roots of the text, and ``r*b`` for each root
         ``r = b*sqrt(a/b)`` of a quotient, since r has the sign of b.
     free : frozenset of int
-        Indices of generators whose values nothing else restricts. The other generators depend on symbols in a way that
-        polynomials cannot express, as tanh(x) depends on x.
+        Indices of generators that may have every value which these polynomials and signs allow. The other generators
+        depend on symbols in a way that polynomials cannot express, as tanh(x) depends on x.
     unconstrained : tuple of PolyElement
         Divisors with a generator that is not free. The random search for points ignores them.
     complete : bool
@@ -69,7 +70,7 @@ class Constraints:
 
 
 def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
-    """Return the numbers of the generators (unknowns of the ring) that occur in polynomials."""
+    """Return the indices of the generators (unknowns of the ring) that occur in polynomials."""
     return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
 
 

@@ -234,7 +234,7 @@ class _ClaimCase(Case):
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Numbers of those factors in the ring which, by a hypothesis, are not zero.
+        Indices, in the ring's list of divisors, of those that are nonzero by a hypothesis.
     numerators : list of PolyElement
         The numerators of left - right for the unproven entries, reduced by the hypotheses.
     branches : list of Requirement or None

@@ -278,8 +278,9 @@ class _Conditions:
     ----------
     ranges : mapping
         Quantity -> its bounds.
-    products : mapping
-        Product of at least two factors -> its sign, ``"> 0"`` or ``">= 0"``.
+    products : list of (mapping, int, str)
+        Conditions on products of at least two factors: (factor -> power, direction, sign), which say that direction (1
+        or -1) times the product has the sign ``"> 0"`` or ``">= 0"``.
     nonzero : mapping
         Formulas that must not be zero, in the order in which they came.
     whole : list of (Expr, str)

@@ -172,7 +172,7 @@ class _Drawing:
     def drawn(self, place: int) -> Any:
         """Return a random rational value for an unknown, of a sign that the constraints allow.
 
-        ``place`` is the number of the unknown.
+        ``place`` is the index of the unknown.
         """
         source = self.source
         for _ in range(20):
@@ -286,7 +286,7 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root of ``poly``, which has only the unknown with the number ``place``.
+        """Return a root of ``poly``, which contains one unknown, with the index ``place``.
 
         An irrational root is first added to the field.
         """
@@ -357,7 +357,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
     """Return a polynomial with ``above/below`` in place of an unknown, times a power of ``below``.
 
-    The power is just so high that the result has no divisor. ``place`` is the number of the unknown.
+    The power is just so high that the result has no divisor. ``place`` is the index of the unknown.
     """
     degree = poly.degrees()[place]
     if not degree:

@@ -211,7 +211,7 @@ def identified(
         The name that the claim gives to the value. If there is one, the renaming must not mix up axes:
         if I_1 stands for the moment about some axis, omega_1 must be the component along the same axis.
     fits : function
-        Tells whether a claim may mean an identification, such as :func:`fits_quantity`; others are left out.
+        Tells whether a claim may mean an identification, by its units and names; others are left out.
     """
     entries, shape = flatten(value)
     try:

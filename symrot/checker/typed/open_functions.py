@@ -90,7 +90,7 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return 2 for ``sin x^2`` if this reading takes it as (sin x)^2; None if it is sin(x^2), as usual.
+        """Return 2 for ``sin x^2`` if the parser chooses the less usual meaning (sin x)^2; None if it is sin(x^2).
 
         ``factors`` are the factors of the argument so far; the exponent is removed from the last one if it is returned.
         """

@@ -96,8 +96,8 @@ class PiecesPart(OpenFunctionsPart):
     def is_star(self) -> bool:
         """Return whether the star at the cursor marks a conjugate, as in ``q v q*``, and is no product sign.
 
-        It does if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but it is the same
-        letter, after a blank: then the star marks a conjugate too.
+        The star marks a conjugate if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but
+        it is the same letter, after a blank: then the star marks a conjugate too.
         """
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:

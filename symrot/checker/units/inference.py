@@ -166,11 +166,10 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, and return it; if they differ, record a contradiction.
+        """Require that two values have the same dimension, and return it.
 
-        The dimension of ``first`` is then returned.
-
-        ``words`` is the sentence that is recorded, in which {0} and {1} stand for the two units.
+        If they differ, the contradiction is recorded and the dimension of ``first`` is returned. ``words`` is the
+        sentence for the record, in which {0} and {1} stand for the two units.
         """
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
