@@ -3,8 +3,8 @@
 ``python -m symrot.checker.recognition.known_formulas`` prints the file again; none of its formulas is typed by hand.
 """
 
+import json
 import re
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -409,10 +409,17 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the known formulas by their key, a hash that does not depend on the names of symbols."""
+    """Return the known formulas by their key, a hash that does not depend on the names of symbols.
+
+    The values in the file as :func:`page` prints it are also JSON, which is read in a fraction of the time of TOML.
+    """
     formulas: dict[str, list[Known]] = {}
-    for entry in tomllib.loads(FILE.read_text(encoding="utf-8"))["formula"]:
-        formulas.setdefault(entry.pop("key"), []).append(Known(**entry))
+    _, *entries = FILE.read_text(encoding="utf-8").split("\n[[formula]]\n")
+    for entry in entries:
+        fields = {
+            name: json.loads(value) for name, _, value in (line.partition(" = ") for line in entry.splitlines() if line)
+        }
+        formulas.setdefault(fields.pop("key"), []).append(Known(**fields))
     return formulas
 
 
