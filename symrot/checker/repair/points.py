@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, is_derivative, walk
 from symrot.checker.repair.dual import (
     Dual,
     UndefinedValue,
@@ -133,7 +133,7 @@ class Point:
         """
         order = 0
         inner = variable
-        while inner.kind == "call" and inner.value == "diff":
+        while is_derivative(inner):
             order += len(inner.args) - 1
             inner = inner.args[0]
         name = inner.value
