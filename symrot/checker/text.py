@@ -578,7 +578,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
         _, left, right = claim.relation
         others = _names(right) - _names(left)
         if verdict.verdict in ("false", "conditional", "definition") and others and _names(left) - _names(right):
-            under_name = check_claim(claim.with_relation(("==", named.side, right)), repair=False)
+            renamed = claim.with_relation(("==", named.side, right))
+            under_name = check_claim(renamed)
+            repairs = tuple(_marked(repair, renamed, notation) for repair in under_name.repairs)
+            under_name = replace(under_name, repairs=repairs)
             link = notation.relation(claim.relation)
             note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
             verdict = replace(under_name, notes=(*under_name.notes, note))

@@ -66,7 +66,8 @@ class TypedNotation:
         """
         if is_derivative(node):
             name = str(node.args[0].value)
-            if name not in self.timed or not (_is_rate(node) or _is_rate_of_name(node)):
+            is_rate = _is_rate(node) or (name in self.timed and _is_rate_of_name(node))
+            if not self.timed or not is_rate:
                 return replace(node, args=tuple(self._in_full(child) for child in node.args))
             return Node("name", self.spelling.get(name, name) + "'" * (len(node.args) - 1))
         if node.kind == "call" and node.value in self.timed:

@@ -97,9 +97,10 @@ class Meaning:
     def is_of(self, name: str) -> bool:
         """Return whether this is the meaning of ``name``, or of the vector or matrix that has ``name`` as an entry.
 
-        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12.
+        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12; one for a quaternion beta
+        counts for beta_0.
         """
-        stem = re.sub(r"_?[xyz1-3]$", "", name)
+        stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
 

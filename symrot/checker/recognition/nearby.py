@@ -297,9 +297,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
     name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
-    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
-    timed = Node("call", name, (TIME,))
-    lacking = (timed if timed in moving else Node("name", name)) if absent is not None else None
+    lacking = _lacking_letter(absent, name, letters) if absent is not None else None
     if lacking in letters.atoms:
         return []
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
@@ -321,6 +319,19 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         flags = other_unit, is_shifted, is_symmetric
         near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters, texts))
     return near_ones
+
+
+def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
+    """Return the tree of the quantity ``absent`` that a claim lacks, under the name ``name``.
+
+    It is a function of time if its rate occurs in the claim, and a derivative if it is the rate of an angle in a claim
+    with rates.
+    """
+    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
+    timed = Node("call", name, (TIME,))
+    if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
+        return Node("call", "diff", (Node("call", name[1:], (TIME,)), TIME))
+    return timed if timed in moving else Node("name", name)
 
 
 def _is_promising(search: Search, needed: Values) -> bool:

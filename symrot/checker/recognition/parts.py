@@ -348,12 +348,48 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
     elif not (node.kind in ("name", "call", "sum") and parent) and not (node.kind == "product" and parent == "inv"):
         return
     bases = values_of(base, letters.points) or ()
+    if exponent == 2 and base in letters.atoms:  # x*y was written as x^2
+        yield from _with_other_factor(base, bases, letters)
     for power in POWERS:
         if power != exponent and power and not (power < 0 and parent == "inv"):
             size = base if abs(power) == 1 else Node("power", None, (base, number(abs(power))))
             made = size if power > 0 else Node("inv", None, (size,))
             cost = COST["exponent"] + (0.0 if {power, exponent} == {1, 2} else COST["not_a_square"])
             yield Variant(Change(made, "exponent", cost), tuple(value**power for value in bases))
+
+
+def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[Variant]:
+    """Yield the products of a symbol ``base`` and each other symbol, in place of its square: x*y for x^2.
+
+    ``bases`` are the values of the symbol.
+    """
+    alike = neighbours(base.value, letters.names) if base.kind == "name" else ()
+    for other, others in letters.atoms.items():
+        if other != base:
+            cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
+            made = Change(product([base, other]), "wrong_symbol", cost)
+            yield Variant(made, tuple(a * b for a, b in zip(bases, others, strict=True)))
+
+
+def _of_square(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
+    """Yield the square of a quotient, (a/b)^2 for a/b, and the sum of squares, a^2 - b^2 for (a - b)^2."""
+    factors = [factor.args[0] if factor.kind == "inv" else factor for factor in node.args]
+    if node.kind == "product" and len(factors) > 1 and parent == "sum" and all(f in letters.atoms for f in factors):
+        squares = [_square_of(factor) for factor in node.args]
+        yield Variant(Change(product(squares), "exponent", COST["exponent"]), tuple(v**2 for v in values))
+    if node.kind == "power" and node.args[0].kind == "sum" and node.args[1] == number(2):
+        terms = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in node.args[0].args]
+        made = sum_of(terms)
+        changed = values_of(made, letters.points)
+        if changed is not None:
+            yield Variant(Change(made, "exponent", COST["exponent"]), changed)
+
+
+def _square_of(tree: Node) -> Node:
+    """Return the square of a tree; for 1/a it is 1/a^2."""
+    if tree.kind == "inv":
+        return Node("inv", None, (_square_of(tree.args[0]),))
+    return Node("power", None, (tree, number(2)))
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
@@ -446,7 +482,7 @@ def _exchanged(tree: Node, angle: Node) -> Node:
     return replace(tree, args=tuple(_exchanged(child, angle) for child in tree.args))
 
 
-_VARIANTS = (_of_letter, _of_exponent, _of_function, _of_factor, _of_terms)
+_VARIANTS = (_of_letter, _of_exponent, _of_square, _of_function, _of_factor, _of_terms)
 
 
 def rational(values: Sequence[float]) -> Fraction | None:
