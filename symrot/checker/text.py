@@ -18,7 +18,7 @@ from symrot.checker.claim.reader import Declared, Reading, Relation, read_relati
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
-from symrot.checker.claim.tree import Node, number, walk, with_names
+from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
@@ -30,7 +30,6 @@ from symrot.checker.recognition.together import fit_together, misplaced
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
-from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
     STANDARD_GRAVITY,

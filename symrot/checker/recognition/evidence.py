@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
@@ -41,7 +41,6 @@ __all__ = [
     "words_of",
 ]  # fmt: skip
 
-TIME = Node("name", "t")
 
 LEAST_SYMBOLS_EDITED = 3
 """The fewest symbols of a scalar formula that is edited."""

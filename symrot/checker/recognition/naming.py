@@ -20,7 +20,7 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.named_formula import NamedFormula, solution
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk, with_names
+from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import (
@@ -146,7 +146,7 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
     (the matrix becomes a known one by a change), the verdict also has the corrected equations as repairs.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
-    is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
+    is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
         return None
     verdict = verdict_on_name(claim, named._replace(formula=factors[0]), repair)
@@ -157,10 +157,6 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
         side = product([read_relation(edited.text)[2], factors[1]])
         repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
     return replace(verdict, repairs=tuple(repairs))
-
-
-def _is_rate(tree: Node) -> bool:
-    return tree.kind == "call" and tree.value == "diff"
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:

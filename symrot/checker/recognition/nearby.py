@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, Path, number, replaced, walk
+from symrot.checker.claim.tree import TIME, Node, Path, number, replaced, walk
 from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
@@ -57,7 +57,6 @@ MOST_NODES = 500
 FEW = 3
 """The most symbols of a known formula with an angle that a claim without angles may mean."""
 SQUARED = ", squared"
-TIME = Node("name", "t")
 
 
 class Near(NamedTuple):

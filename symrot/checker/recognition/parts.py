@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any, NamedTuple
 
-from symrot.checker.claim.tree import Node, Path, negated, number, product, sum_of
+from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, negated, number, product, sum_of
 from symrot.checker.repair.dual import minus
 from symrot.checker.repair.edits import COST, OPPOSITE, neighbours, scaled
 from symrot.checker.repair.filter import at, matrix_entries
@@ -47,7 +47,6 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "cot": lambda x: 1 / math.tan(x),
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
 }  # fmt: skip
-TIME = Node("name", "t")
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
@@ -106,7 +105,7 @@ class PointOfLetters(Point):
     def _value(self, node: Node) -> Any:
         if node.kind == "call" and node in self.rates:
             return self.rates[node]
-        if node.kind == "call" and node.value == "diff" and str(node.args[0].value) in self.definitions:
+        if is_derivative(node) and str(node.args[0].value) in self.definitions:
             return super()._value(rates_of_entries(self.definitions[str(node.args[0].value)], node.args[1:]))
         return super()._value(node)
 
