@@ -237,9 +237,24 @@ def _torques() -> Iterator[Named]:
     for kind, title, fields in ACTING:
         law = torque_law(FieldTorque(kind, "", tuple(fields.items())), motion)
         source = f'symrot.dynamics.torques, kind "{kind}"'
-        yield f"torque of {title}, body components", source, law.torque
+        for letters in _letters_of_books(law.torque):
+            yield f"torque of {title}, body components", source, law.torque.subs(letters)
         if law.potential is not None:
             yield f"potential of {title}", source, law.potential
+
+
+def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
+    """Return the letters that books use for symbols of the torque of the gravity gradient; [{}] for other torques.
+
+    The direction to the planet's centre is the third column of a rotation matrix, or a unit vector.
+    """
+    named = {symbol.name: symbol for symbol in torque.free_symbols}
+    if "mean_motion" not in named:
+        return [{}]
+    direction = [named[f"radius_{axis}"] for axis in (1, 2, 3)]
+    rate = {named["mean_motion"]: symbols.n}
+    columns = [symbols.rotation_entries[2::3], symbols.axis]
+    return [rate | dict(zip(direction, column, strict=True)) for column in columns]
 
 
 def stated() -> Iterator[Named]:

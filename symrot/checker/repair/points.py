@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, is_derivative, walk
 from symrot.checker.repair.dual import (
     Dual,
     UndefinedValue,
@@ -131,7 +131,7 @@ class Point:
         """
         order = 0
         inner = variable
-        while inner.kind == "call" and inner.value == "diff":
+        while is_derivative(inner):
             order += len(inner.args) - 1
             inner = inner.args[0]
         name = inner.value
