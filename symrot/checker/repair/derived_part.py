@@ -38,8 +38,8 @@ def derived_part(claim: Claim, place: str) -> Node | None:
     >>> from symrot.checker.claim.claims import Claim
     >>> from symrot.checker.claim.reader import read_relation
     >>> from symrot.checker.claim.tree import text
-    >>> claim = Claim("", read_relation("diag(0, 2*m*r**2) == Matrix([[m*r**2/3, 0], [0, m*r**2]])"), implied=True)
-    >>> text(derived_part(claim, "left"))
+    >>> relation = read_relation("diag(0, 2*m*r**2) == Matrix([[m*r**2/3, 0], [0, m*r**2]])")
+    >>> text(derived_part(Claim(relation=relation, implied=True), "left"))
     'diag(m*r**2/3, m*r**2)'
     """
     assert claim.relation is not None
