@@ -361,7 +361,9 @@ def _integral_over_body(scope: Scope, node: Node) -> Any:
 def _sum_of_moments(scope: Scope, node: Node, value: Expr) -> Expr:
     coordinates = [symbol for symbol in sorted(value.free_symbols, key=str) if COORDINATES.fullmatch(str(symbol))]
     if not value.is_polynomial(*coordinates):
-        raise scope.fail(node.args[0], "a polynomial in x, y and z, such as x**2*y, to integrate over a body")
+        raise scope.fail(
+            node.args[0], "a polynomial in the coordinates x, y and z to integrate over a body (as x**2*y)"
+        )
     terms = sympy.Poly(value, *coordinates).terms() if coordinates else [((), value)]
     total = []
     for powers, factor in terms:

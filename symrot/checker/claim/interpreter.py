@@ -151,7 +151,9 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node.args[1], "a number as an exponent")
     most = LARGEST_WHOLE_EXPONENT if exponent.q == 1 and not is_matrix(base) else LARGEST_EXPONENT
     if abs(exponent.p) > most or exponent.q > LARGEST_ROOT:
-        raise interpreter.fail(node.args[1], f"an exponent of at most {most}, or a root of at most degree {LARGEST_ROOT}")
+        raise interpreter.fail(
+            node.args[1], f"an exponent of at most {most} or a root of degree at most {LARGEST_ROOT}"
+        )
     if is_matrix(base):
         if base.rows != base.cols or exponent.q != 1:
             raise interpreter.fail(node, "a square matrix to a whole power")

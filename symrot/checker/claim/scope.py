@@ -129,7 +129,9 @@ class Scope(ABC):
     def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
         """Return the value; raise InputError if it has more than ``most`` symbols, numbers and operations."""
         if pieces(value if is_matrix(value) else [value]) > most:
-            raise self.fail(node, f"a shorter formula (multiplied out, it has more than {most} symbols, numbers and operations)")
+            raise self.fail(
+                node, f"a shorter formula (at most {most} symbols, numbers and operations after evaluation)"
+            )
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
