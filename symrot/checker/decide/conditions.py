@@ -40,11 +40,11 @@ def requirements(
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The reduced numerators of the residuals (left - right) that are not zero.
+        The numerators, in lowest terms, of left - right for those entries of the claim where that is not zero.
     sides : sequence of (Expr, Expr)
-        Left and right side of the entry that each residual belongs to.
+        The left and the right side of the entry to which each numerator belongs.
     entries : int
-        The number of entries of the claim.
+        The number of all entries of the claim. If there is one, a condition that only repeats the claim is left out.
     """
     conditions = []
     for factor in _shared_factors(ring, numerators):
