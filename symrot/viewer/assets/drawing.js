@@ -8,7 +8,7 @@ const ARROWS = {
 const LONGEST = 1.5;      // length of the longest ω, L or M, relative to the body
 const TIP = 1.3;          // distance of the tip of the body's axis from the point of rotation
 const TRAIL = 2000;       // fewest points of a path
-const MOST = 40000;       // most points of a path
+const MOST = 20000;       // most points of a path
 const APART = 17;         // pixels between the middles of two labels
 
 export class Drawing {
@@ -17,7 +17,8 @@ export class Drawing {
         this.data = data;
         this.canvas = canvas;
         this.labels = labels;
-        this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
+        this.isSoftware = Drawing.#isSoftware();
+        this.renderer = new WebGLRenderer({canvas, antialias: !this.isSoftware, alpha: true});
         this.scene = new Scene();
         this.camera = new PerspectiveCamera(35, 1, 0.05, 100);
         this.camera.up.set(0, 0, 1);
@@ -49,6 +50,14 @@ export class Drawing {
         this.#addVertical();
     }
 
+    /** Return whether WebGL runs on the processor: moving pictures are then drawn without smooth edges, still ones in twice the size. */
+    static #isSoftware() {
+        const gl = document.createElement("canvas").getContext("webgl2"), info = gl?.getExtension("WEBGL_debug_renderer_info");
+        const name = String(gl?.getParameter(info?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
+        gl?.getExtension("WEBGL_lose_context")?.loseContext();
+        return /SwiftShader|llvmpipe|softpipe|Software|Basic Render/i.test(name);
+    }
+
     /** Give a material a colour of the palette by its name, and keep both, so that the palette can change. */
     #tint(material, name) {
         material.color.setHex(this.colours[name]);
@@ -78,6 +87,7 @@ export class Drawing {
             polygonOffsetFactor: -2, polygonOffsetUnits: -2,
         });
         const edge = this.#tint(new LineBasicMaterial(), "edge");
+        const surfaces = [false, true].map((isHole) => ({isHole, points: [], shade: [], index: []}));      // each is drawn at once
         this.data.patches.forEach((patch, number) => {
             const points = Float32Array.from(patch.points), count = points.length/3;
             if (patch.columns === 0) {
@@ -99,14 +109,15 @@ export class Drawing {
                 shape.add(new Mesh(tube, this.solid));
                 return;
             }
-            const geometry = new BufferGeometry(), index = [], shade = [];
+            const {points: all, index, shade} = surfaces[patch.hole ? 1 : 0], before = all.length/3;
+            for (let k = 0; k < points.length; ++k) all.push(points[k]);
             for (let i = 0; patch.mesh && i < count; ++i) {
                 const first = 9*Math.floor(i/3);                        // the quadrant of the triangle's centre
                 const x = points[first] + points[first + 3] + points[first + 6];
                 const y = points[first + 1] + points[first + 4] + points[first + 7];
                 const tone = x*y < 0 ? 0.72 : 1;
                 shade.push(tone, tone, tone);
-                index.push(i);
+                index.push(before + i);
             }
             for (let i = 0; !patch.mesh && i < patch.rows; ++i) {
                 for (let j = 0; j < patch.columns; ++j) {
@@ -114,17 +125,21 @@ export class Drawing {
                     const tone = Math.floor(4*turning + 1e-9) % 2 ? 0.72 : 1;    // quarters, so that a spin can be seen
                     shade.push(tone, tone, tone);
                     if (i + 1 === patch.rows || j + 1 === patch.columns) continue;
-                    const a = i*patch.columns + j, b = a + 1, c = a + patch.columns, d = c + 1;
+                    const a = before + i*patch.columns + j, b = a + 1, c = a + patch.columns, d = c + 1;
                     index.push(a, b, c, b, d, c);
                 }
             }
-            geometry.setAttribute("position", new BufferAttribute(points, 3));
+        });
+        for (const {isHole, points, shade, index} of surfaces) {
+            if (!index.length) continue;
+            const geometry = new BufferGeometry();
+            geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
             geometry.setAttribute("color", new BufferAttribute(Float32Array.from(shade), 3));
             geometry.setIndex(index);
             geometry.computeVertexNormals();
-            shape.add(new Mesh(geometry, patch.hole ? hole : this.solid));
+            shape.add(new Mesh(geometry, isHole ? hole : this.solid));
             shape.add(new LineSegments(new EdgesGeometry(geometry, 30), edge));
-        });
+        }
         shape.matrixAutoUpdate = false;
         this.body.add(shape);
         this.parts.body = [shape];
@@ -160,14 +175,14 @@ export class Drawing {
     }
 
     #axes(length, colour, names, parent) {
-        const {Group, Line, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
-        const group = new Group(), material = this.#tint(new LineBasicMaterial(), colour);
+        const {Group, LineSegments, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
+        const group = new Group(), points = [];
         names.forEach((name, k) => {
             const end = new Vector3().setComponent(k, length);
-            const geometry = new BufferGeometry().setFromPoints([new Vector3(), end]);
-            group.add(new Line(geometry, material));
+            points.push(new Vector3(), end);
             this.#pin(name, colour, () => group.visible ? group.localToWorld(end.clone().multiplyScalar(1.06)) : null);
         });
+        group.add(new LineSegments(new BufferGeometry().setFromPoints(points), this.#tint(new LineBasicMaterial(), colour)));
         parent.add(group);
         return group;
     }
@@ -393,19 +408,29 @@ export class Drawing {
 
     resize() {
         const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
-        this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+        this.width = width;
+        this.height = height;
+        this.renderer.setPixelRatio(this.#pixels(true));
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width/Math.max(height, 1);
         this.camera.fov = this.camera.aspect < 1 ? 48 : 35;
         this.camera.updateProjectionMatrix();
-        this.width = width;
-        this.height = height;
         this.isStale = true;
     }
 
-    /** Draw a frame if anything has changed since the last one. */
-    render() {
-        if (!this.controls.update() && !this.isStale) return;
+    /** Return how many pixels of the picture a pixel of the page has. */
+    #pixels(isMoving) {
+        return this.isSoftware ? isMoving ? 1 : 2 : Math.min(window.devicePixelRatio, 2);
+    }
+
+    /** Draw a frame if anything has changed since the last one; `isMoving` if the next frame will be another one. */
+    render(isMoving = false) {
+        const isDragged = this.controls.update(), pixels = this.#pixels(isMoving || isDragged);
+        if (pixels !== this.renderer.getPixelRatio()) {
+            this.renderer.setPixelRatio(pixels);
+            this.isStale = true;
+        }
+        if (!isDragged && !this.isStale) return;
         this.isStale = false;
         this.renderer.render(this.scene, this.camera);
         const places = [];      // of the labels so far: a label that would cover another one moves aside
@@ -416,11 +441,19 @@ export class Drawing {
             if (hidden) continue;
             let x = (point.x + 1)/2*this.width;
             const y = (1 - point.y)/2*this.height;
+            Object.assign(element.style, {left: "0", top: "0"});
             const width = APART*(1 + element.textContent.length)/2;
             while (places.some(([a, b, other]) => Math.abs(a - x) < (width + other)/2 && Math.abs(b - y) < APART)) x += APART/2;
             places.push([x, y, width]);
-            element.style.left = `${100*x/this.width}%`;
-            element.style.top = `${100*y/this.height}%`;
+            element.style.transform = `translate(-50%, -50%) translate(${x}px, ${y}px)`;
+        }
+    }
+
+    /** Put the labels where they stay in place when the picture changes its size, as on paper. */
+    pinInPercent() {
+        for (const {element} of this.pins) {
+            const [x, y] = element.style.transform.match(/[-\d.]+(?=px)/g) ?? [0, 0];
+            Object.assign(element.style, {left: `${100*x/this.width}%`, top: `${100*y/this.height}%`, transform: "translate(-50%, -50%)"});
         }
     }
 

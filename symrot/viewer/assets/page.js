@@ -4,7 +4,7 @@ const KEYS = "space: play or pause; left, right: step; home, end: start, end; up
     + " shift with arrows: rotate the view; +, -: zoom; f: full screen";
 const REDUCED = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
-const SLICE = 10, FIRST_SLICE = 40;      // ms: how long a motion is computed before the next frame, and the first motion
+const SLICE = 10, FIRST_SLICE = 100;     // ms: how long a motion is computed before the next frame; the first motion
 const STEPS_AT_ONCE = 16, SAMPLES_AT_ONCE = 64;
 const LONGEST_RUN = 500;          // ms: a computation that has run longer is given up when the reader asks for another motion
 const TURN = Math.PI/24;          // rad: rotation of the view by a key
@@ -47,7 +47,6 @@ class Page {
         this.stop = data.start;          // how far the motion is computed
         this.fastest = Math.hypot(...data.omega);
         this.frames = 0;
-        element("title").textContent = data.title;
         element("source").textContent = [data.source, data.drawn].filter(Boolean).join(". ");
         element("keys").textContent = KEYS;
         this.#layers();
@@ -56,6 +55,7 @@ class Page {
         this.#panels();
         this.setSpeed(this.#usualSpeed());
         this.recompute();
+        this.#advance(FIRST_SLICE);
         this.#pose();
         const resize = () => {
             this.drawing.resize();
@@ -65,6 +65,10 @@ class Page {
         window.addEventListener("resize", resize);
         for (const media of [DARK, window.matchMedia("print")]) media.addEventListener("change", () => this.#recolour());
         window.addEventListener("beforeprint", () => this.#print());
+        window.addEventListener("afterprint", () => {
+            this.#recolour();
+            this.drawing.resize();
+        });
         resize();
         requestAnimationFrame((now) => this.#frame(now));
     }
@@ -361,6 +365,7 @@ class Page {
         const still = element("still");
         still.src = element("canvas").toDataURL();
         element("stage").style.setProperty("--ratio", this.drawing.ratio);
+        this.drawing.pinInPercent();
     }
 
     /** Compute a motion and all that is drawn of it, in pieces; yields the part that is done, 0 to 1. */
@@ -374,7 +379,7 @@ class Page {
         const momentum = Math.hypot(...first.momentum), energy = Math.max(Math.abs(first.energy), Math.abs(first.kinetic ?? 0));
         const scales = data.conserved.map(({unit}, k) => (unit === "J" ? energy : unit === "kg m^2/s" ? momentum : 0) || Math.abs(first.conserved[k]) || 1);
         if (data.orbit) this.longAxisSign = dot(rotate(first.quaternion, data.orbit.axis), first.vertical) < 0 ? -1 : 1;
-        const count = Math.min(Math.max(Drawing.TRAIL, 4*motion.detail), Drawing.MOST), largest = {omega: 0, momentum: 0, torque: 0};
+        const count = Math.min(Math.max(Drawing.TRAIL, motion.detail), Drawing.MOST), largest = {omega: 0, momentum: 0, torque: 0};
         const paths = {axis: new Float32Array(3*count), omega: new Float32Array(3*count), omegaBody: new Float32Array(3*count)};
         for (let k = 0; k < count; ++k) {
             const state = model.at(data.start + (reached - data.start)*k/(count - 1));
@@ -475,10 +480,11 @@ class Page {
             }
             this.#pose();
         }
-        this.drawing.render();
+        this.drawing.render(this.playing);
         this.frames += 1;
         requestAnimationFrame((next) => this.#frame(next));
     }
 }
 
-window.symrot = new Page();
+// the text of the page is painted first
+requestAnimationFrame(() => setTimeout(() => { window.symrot = new Page(); }));
