@@ -165,7 +165,8 @@ def arguments(parser: ArgumentParser) -> None:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
     add("--methods", metavar="NAMES", help="methods to compare, separated by commas: exact, taylor, "
-        "dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau (default: all)")  # fmt: skip
+        "dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau; the lower-case ones except heyoka are symrot's methods, "
+        "the last four are SciPy's, called without symrot (default: all)")  # fmt: skip
     add(
         "--tolerances",
         metavar="LIST",

@@ -45,7 +45,7 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of the end states of an ensemble, one row for each trajectory.
+        """Return the largest error of all end states, one number; row k of ``states`` is the end state of trajectory k.
 
         Only the first trajectories have an exact end state and are compared.
         """

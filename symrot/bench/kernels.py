@@ -3,7 +3,8 @@
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..] [--jacobians] [--count]
 
 With ``--jacobians``, each kernel also computes the derivatives of its outputs by angles, quaternion and angular
-velocity, which each tool derives itself. ``--count`` counts operations only, in seconds.
+velocity, which each tool derives itself. With ``--count``, nothing is timed: the program only counts operations, and
+ends after a few seconds.
 
 A contestant is one tool's version of a kernel. Each is timed on one sample at a time, on a batch that fits in the
 cache, and on a batch of 10^6 samples. All contestants alternate in one run, on one thread, on the same memory, and
@@ -62,7 +63,8 @@ SHAPES = ("one", "cached", "many")
 class Contestant:
     """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input.
 
-    The shapes of input are "one" sample at a time, a "cached" batch and "many" samples.
+    The shapes are ``one`` (a single sample at a time), ``cached`` (a batch that fits in the processor's cache) and
+    ``many`` (a batch that does not).
     """
 
     name: str
@@ -222,9 +224,10 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function that calls ``run(repeats, place)`` long enough for the clock; it returns s per sample.
+    """Return a function of ``place`` that times ``run(repeats, place)`` and returns seconds per sample.
 
-    Its argument ``place`` is the number of the block of memory; one call of ``run`` handles ``samples`` samples.
+    ``place`` is the number of the memory block that holds inputs and outputs. One repeat handles ``samples`` samples;
+    ``repeats`` is chosen so large that the clock measures the time accurately.
     """
     repeats, elapsed = 1, 0.0
     while elapsed < SHORTEST:  # the first runs start with cold caches
@@ -242,9 +245,11 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a timing function for each shape of input (one sample, batches), from a compiled library.
+    """Return a map from each of ``shapes`` to a timing function, which takes a memory block's number and returns s per
+    sample.
 
-    ``shapes`` are names such as ``"cached"``; ``many`` is the number of samples in a large batch.
+    The shapes are ``one`` (a single sample), ``cached`` (a batch that fits in the cache) and ``many`` (a batch of
+    ``many`` samples). The functions call the compiled library ``loaded``; ``name`` is the kernel.
     """
     runs = {}
     for shape in shapes:
@@ -264,8 +269,10 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile a kernel, and return its timing functions and its outputs for the batch that fits in the cache.
+    """Compile a kernel; return its timing functions for ``shapes`` (see :func:`_runs`), and its outputs for a small
+    batch.
 
+    The small batch, of ``CACHED`` samples, serves to compare the tools' results; a large batch has ``many`` samples.
     ``text`` is the C text with its drivers (see :func:`_drivers`). ``prepare`` is called with the loaded library, for
     tools whose functions need a set-up.
     """
@@ -409,8 +416,8 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return, for each shape of input, the ratio of symrot's time to the time of the best other tool.
 
     The first contestant is symrot. The least times are compared, except for batches of many samples: their speed is
-    limited by memory, which other processes use too. There the ratio to each other tool is computed in each round; the
-    result is the largest median.
+    limited by memory, which other processes use too. For these, the ratio to each other tool is the median over the
+    rounds, and the largest of these medians is returned.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}

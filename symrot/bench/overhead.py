@@ -47,7 +47,10 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
 
     bare()
     if run.next != len(times) or call(place, *arguments) != DONE:
-        raise InputError(f"{propagate.scene.name}: expected a motion that a single call of a C stepper can follow")
+        raise InputError(
+            f"{propagate.scene.name}: expected a motion that one call of a C stepper follows to its end; choose a "
+            "shorter span or another scene"
+        )
     return bare
 
 

@@ -3,14 +3,16 @@
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
-The first table has a row for each scene and method, in microseconds. The columns are:
+The first table has a row for each scene and method. Its times are in microseconds. A call gets a new angular velocity,
+a new attitude, or both. The columns are:
 
-- reading the initial state; planning (with known structure); binding parameters; setting up the motion (constants of a
-  closed form, or the arguments of a stepper);
-- the motion itself: the work in C and the call of this work, if both angular velocity and attitude are changed;
-- whole calls at 101 times with another angular velocity, with another attitude, and with both;
-- overhead, the time of a call minus the time of its motion: for the more expensive of the first two calls, and for the
-  third call;
+- the time to read the initial state; to plan the motion, if the scene's structure has been planned before; to compute
+  the parameters of the compiled functions; to set up the motion (constants of a closed form, or the arguments of a
+  stepper);
+- the motion itself, in C, in a call with both a new angular velocity and a new attitude;
+- a whole call for 101 times: with a new angular velocity, with a new attitude, and with both;
+- the overhead, which is the time of a call minus the time of its motion: first the larger one of the calls with one new
+  value, then that of the call with both;
 - the most expensive call of a stepper while C does no work. On a loaded machine Python is slower after a long motion;
   this column is free of that effect.
 
@@ -139,7 +141,10 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 class _Row(NamedTuple):
-    """A row of the first table: microseconds of calls with a new omega, a new attitude, or both, and their parts."""
+    """One motion's times, in microseconds: the whole calls of the propagator, and the times of the parts of one call.
+
+    The calls get a new angular velocity, a new attitude, or both.
+    """
 
     parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
     motion: float  # the motion itself, with both changed

@@ -81,9 +81,10 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return error, statistics and least seconds of a method on a test problem.
+    """Return the error of a method on a test problem, the statistics of its steps, and its least time, s.
 
-    The error is the largest one at the samples and midway between them, divided by the largest value and the tolerance.
+    The error is the largest difference from the exact solution, at the samples and midway between them. It is divided
+    by the largest value of the solution and by the tolerance: 1 is an error as large as the tolerance.
     """
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)

@@ -195,7 +195,8 @@ def _stepper(
 
 
 def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a function that runs heyoka on the same right-hand side, whose parameters are compiled as numbers.
+    """Return a function that runs heyoka on the rates of ``problem``, with the problem's parameters compiled as
+    numbers.
 
     ``settings`` are heyoka's own, such as ``fast_math``. Return None if heyoka is not installed.
     """
@@ -312,7 +313,11 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return the ratios of other times to symrot's, by title of the column."""
+    """Print the table of one motion; return, for each column, the times of another program divided by those of symrot.
+
+    The columns are named by the other program or method, such as ``heyoka``; each has one ratio per power of ten of the
+    error.
+    """
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]

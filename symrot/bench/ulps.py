@@ -9,9 +9,9 @@ branch. The reference is mpmath at 60 digits. Test points have all magnitudes fr
 function's reach; some lie on both sides of the threshold below which a series is used, and next to multiples of pi/2.
 
 The reach is the largest |x| that is tested: any finite number for one sample, and the range of ``symrot_math.h`` for a
-batch, which calls the form for one sample outside this range. tangent_gap is measured in ulp up to pi, before its first
-zero, and for larger x in units of 2^-53/x^2 (float: 2^-24/x^2). It decreases as cos(x)/x^2, and its relative error has
-no bound near its zeros, which are not floating-point numbers.
+batch, which calls the form for one sample outside this range. The function tangent_gap, (sin x - x cos x)/x^3, is
+measured in ulp up to pi, before its first zero, and for larger x in units of 2^-53/x^2 (float: 2^-24/x^2). It decreases
+as cos(x)/x^2, and its relative error has no bound near its zeros, which are not floating-point numbers.
 """
 
 import argparse
@@ -197,9 +197,11 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the error of ``computed`` in units in the last place of the exact value; if x is not 0, of roundoff/x^2.
+    """Return the distance between ``computed`` and ``exact`` in units in the last place of ``exact``, for the precision
+    ``real``.
 
-    ``real`` is the precision, double or float.
+    If x is not 0, the unit is 2^-53/x^2 instead (2^-24/x^2 for float). This suits a function of x that decreases as
+    1/x^2 and has zeros, where its own last place is no measure.
     """
     digits, least = DIGITS[real.precision]
     if x:
@@ -211,7 +213,9 @@ def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
 
 
 def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTION)) -> Iterator[Measured]:
-    """Yield the largest error of each function in each form, precision and contraction.
+    """Yield the largest error of each tested function, for each form, precision and contraction.
+
+    The forms of a function are the one for a single sample and the one for batches.
 
     Parameters
     ----------

@@ -383,11 +383,17 @@ def _exposed(directory: Path) -> str:
     for path in dict.fromkeys((*directory.absolute().parents, *directory.resolve().parents)):
         for status in (path.lstat(), path.stat()):  # a symbolic link, and its target
             if status.st_uid not in (0, os.getuid()):
-                return f"{path} belongs to another user (uid {status.st_uid}), who could replace {directory}"
+                return (
+                    f"{path} belongs to another user (uid {status.st_uid}), who could replace {directory}; set "
+                    "SYMROT_CACHE to a directory below one of your own"
+                )
         mode = status.st_mode
         others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(status.st_gid))
         if others and not mode & stat.S_ISVTX:
-            return f"{path} can be written by other users, who could replace {directory}"
+            return (
+                f"{path} can be written by other users, who could replace {directory}; forbid them to write (chmod "
+                "go-w), or set SYMROT_CACHE to another directory"
+            )
     return ""
 
 

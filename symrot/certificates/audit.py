@@ -159,10 +159,11 @@ _READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
 
 def _check_others(path: Path, data: Data, source: str) -> list[str]:
-    """Check that the JavaScript and the JAX text of a kernel perform the operations of its C text, ``source``.
+    """Return the findings on the JavaScript and the JAX text of a kernel, one sentence for each file that was compared.
 
-    ``data`` is the content of the certificate at ``path``. The list has one sentence for each of the two files that is
-    in the certificate's folder. CertificateError is raised if a file performs other operations.
+    Each text must perform the operations of the C text, ``source``; CertificateError is raised otherwise. ``data`` is
+    the content of the certificate at ``path``. A file that is not in the certificate's folder is left out, without a
+    sentence.
     """
     findings = []
     for ending, compare in _READERS.items():
@@ -206,11 +207,12 @@ def _bounds(path: Path, data: Data, source: str) -> str:
     if section is None:
         if isinstance(own, dict):
             raise CertificateError(
-                f"{path}: expected bounds of rounding errors, but the certificate has none; emit the kernel again"
+                f"{path}: expected bounds of rounding errors, but the certificate has none; "
+                f"write it again by `symrot emit {data['kernel']}`"
             )
         return "no bounds of rounding errors" + (f": {own}" if own else "")
     if json.dumps(section) == json.dumps(own):
-        return "bounds of rounding errors equal symrot's bounds of these operations on the kernel's own box"
+        return "bounds of rounding errors equal symrot's own for this C text, on the standard ranges of the inputs"
     region = library_region(data["kernel"], source) if own is not None else None
     if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
         raise CertificateError(
@@ -221,7 +223,7 @@ def _bounds(path: Path, data: Data, source: str) -> str:
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)
     check_bounds(section, double, single)
-    return "bounds of rounding errors equal those that symrot computes for these operations on the certificate's box"
+    return "bounds of rounding errors equal those that symrot computes for this C text, on the certificate's ranges"
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:

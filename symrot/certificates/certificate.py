@@ -189,10 +189,10 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Return the certificate of a kernel as data, every statement proven, for comparison with a certificate's file.
+    """Prove all statements about a kernel, and return them as the data of a certificate.
 
-    The optional sections and the seal are left out: the bounds of rounding errors, the verdicts on object code, and the
-    hash of the content.
+    An audit compares them with the content of a certificate's file. The data have no optional sections (bounds of
+    rounding errors, verdicts on object code) and no seal (the hash of the content).
     """
     return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 
@@ -307,7 +307,10 @@ def with_sections(text: str, sections: Mapping[str, Any]) -> str:
 
 
 def certificate_json(data: Data) -> str:
-    """Return a certificate as JSON text, with its seal as the last entry."""
+    """Return a certificate as JSON text; its last entry is the seal, a SHA-256 of all the other entries.
+
+    A seal in ``data`` is ignored and computed again.
+    """
     sealed = {key: value for key, value in data.items() if key != "seal"}
     return _layout(sealed | {"seal": seal(sealed)}) + "\n"
 

@@ -100,14 +100,17 @@ class RandomIntegers(defaultdict):
 
 
 class Evaluator:
-    """An evaluator of formulas as exact fractions, or of C expressions in the C type ``real``.
+    """An evaluator of formulas, or of C expressions; the values are exact fractions in both cases.
 
-    A C expression must have literals of that type.
+    ``real`` is empty for formulas. For C expressions it is ``"double"`` or ``"float"``: literals must have this C type,
+    and are rounded to it; ``constants`` maps a rounded literal to the exact number for which it stands, such as 1/3.
+    Sums and products are not rounded. ``names`` maps variables to values, and ``functions`` maps a function's name with
+    the values of its arguments to the value of the function.
     """
 
     def __init__(self, names, functions, real="", calls=None, constants=(), cases=None):
         self.names, self.functions, self.real, self.calls = names, functions, real, calls
-        self.constants, self.cases, self.near = dict(constants), cases, set()
+        self.constants, self.cases, self.limited_angles = dict(constants), cases, set()
 
     def parsed(self, text):
         """Return the syntax tree of the formula or C expression ``text``.
@@ -120,7 +123,7 @@ class Evaluator:
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
-        """Return the value of the formula or C expression ``text``; variables have the values in ``names``."""
+        """Return the value of the formula or C expression ``text``; ``self.names`` has the values of its variables."""
         return self.value(self.parsed(text))
 
     def value(self, node):
@@ -151,7 +154,7 @@ class Evaluator:
             case ast.Call(func=ast.Name(id=name), args=[first, *others], keywords=[]):
                 values = [self.value(first), *map(self.value, others)]
                 if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
-                    self.near.add(values[0])
+                    self.limited_angles.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
         raise ValueError(
             f"expected sums, products, powers and functions such as sin in a formula, got {ast.unparse(node)[:60]}"
@@ -247,17 +250,17 @@ class KernelCheck:
         )
         return written, exact * self.symbols["pi"] if times_pi else exact
 
-    def run(self, body, places, targets=(), near=()):
+    def run(self, body, places, targets=(), tested=()):
         """Run ``body``, the body of a C function, at given inputs; return the values that it assigns or returns.
 
-        ``places`` and ``targets`` are as for :meth:`Evaluator.run`. ``near`` are the angles that the C text has tested
-        to be in
-        the range of functions such as ``symrot_sin``; a call of these for another angle is an error.
+        ``places`` and ``targets`` are as for :meth:`Evaluator.run`. Functions such as ``symrot_sin`` are accurate only
+        for angles of limited size. ``tested`` are the angles (C expressions) whose size the C text tests; ValueError is
+        raised if ``body`` calls such a function for another angle.
         """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
-            reader.near <= set(map(reader.read, near)),
+            reader.limited_angles <= set(map(reader.read, tested)),
             f"{self.name} calls a function of limited range for an angle that the C text does not test",
         )
         return computed
@@ -310,14 +313,14 @@ class KernelCheck:
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
 
-    def compare(self, bodies, places, targets, near=()):
+    def compare(self, bodies, places, targets, tested=()):
         """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula.
 
         The other arguments are as for :meth:`run`; ``targets`` are in the order of the outputs.
         """
         targets, computed = [*targets], {}
         for body in bodies:
-            computed |= self.run(body, places, [target for target in targets if target not in computed], near)
+            computed |= self.run(body, places, [target for target in targets if target not in computed], tested)
         for target, (place, expected) in zip(targets, self.outputs.items()):
             require(
                 target in computed and computed[target] == expected,
@@ -344,7 +347,7 @@ class KernelCheck:
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
         values = [self.symbols[f"an argument {k}"] for k in range(4)]
         expected = Evaluator(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
-        computed = self.run(body, dict(zip(names, values)), near=names[:1] * function.startswith("symrot_near_"))
+        computed = self.run(body, dict(zip(names, values)), tested=names[:1] * function.startswith("symrot_near_"))
         require(
             computed == expected,
             f"expected {function} to compute {case} else {explicit}, but it computes another value",

@@ -144,7 +144,11 @@ _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll
 
 @dataclass(frozen=True)
 class FlagRemark:
-    """A remark about one compiler flag that is set or missing: what then holds, ``effect``, and the reason."""
+    """A remark about one compiler flag that is set or missing.
+
+    ``effect`` says what still holds because of it: "bits", "bounds" or "nothing", as in :class:`FlagEffect`. ``reason``
+    says why.
+    """
 
     flag: str
     effect: str
@@ -163,7 +167,7 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether at least the certificate's error bounds hold for code compiled with these flags."""
+        """Whether the error bounds hold for code compiled with these flags; the bits of the C text may not."""
         return self.holds != NOTHING
 
     def sentence(self) -> str:
@@ -182,12 +186,20 @@ class FlagEffect:
 
 
 def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
-    """Return the effect of a gcc or clang command's flags on a certificate; a later flag overrides an earlier flag.
+    """Return what still holds of a certificate if its C text is compiled by a gcc or clang command with these flags.
+
+    A later flag overrides an earlier flag.
 
     Parameters
     ----------
     flags : str or sequence of str
         A compiler command, with or without the compiler's name in front; file names in it are ignored.
+
+    Returns
+    -------
+    FlagEffect
+        Its ``holds`` is "bits" (same bits as the C text), "bounds" (only the error bounds) or "nothing"; its
+        ``remarks`` give the reasons, flag by flag.
 
     Raises
     ------

@@ -74,10 +74,10 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return a tuple of one law: each output that is a derivative is the exact derivative of its rate.
+    """Return a tuple of one law: outputs that are derivatives equal the exact derivatives of the rates.
 
-    ``outputs`` are the names of the output components; a derivative's is like ``domega_1_by_A``. The tuple is empty if
-    no output is a derivative.
+    ``outputs`` are the names of the output components. ``domega_1_by_A`` is the derivative by A of the rate
+    ``domega_1``. The tuple is empty if no output is a derivative.
     """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []

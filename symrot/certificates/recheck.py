@@ -220,7 +220,11 @@ OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": oper
 
 
 class Arithmetic:
-    """The base class of arithmetics: a kind of number, and random values of functions at one random point."""
+    """The base class of arithmetics: the operations on one kind of number, with which expressions are evaluated.
+
+    Two formulas are compared by their values at one random point. The subclasses also draw random values there for
+    functions that they do not compute; :meth:`random` stores them, so that equal calls have equal values.
+    """
 
     def __init__(self):
         self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
@@ -317,7 +321,11 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers; functions such as tan and exp, which occur in no law, have random values."""
+    """An arithmetic of 190-digit numbers, in which sin, cos, sqrt, abs, atan2 and copysign have their exact values.
+
+    Other functions, such as tan and exp, get a random value for each argument. No law depends on them, but formulas
+    beside the law may contain them.
+    """
 
     def __init__(self):
         super().__init__()
@@ -589,7 +597,11 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the exact value of a text without variables and functions, such as ``"pi/3"``; pi is rounded."""
+    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``.
+
+    The fraction is exact, except that pi is replaced by the fraction PI, which has more digits than any number in the C
+    text.
+    """
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -746,7 +758,11 @@ class CReader(Reader):
         return int(self.advance())
 
     def use(self, real):
-        """Set ``self.real`` to the type of numbers, double or float, and the tables of functions for this type."""
+        """Prepare to read a function for ``real`` numbers, "double" or "float".
+
+        This sets ``self.real``, and the functions that such a text may call: from <math.h>, from symrot_math.h if the
+        text includes them, and its own inline functions of this type.
+        """
         self.real, end = real, REALS[real]
         self.own = self.inline[real]
         functions = C_FUNCTIONS if "math.h" in self.included else {}
@@ -878,7 +894,11 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body."""
+        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body.
+
+        With ``asks_far``, one statement may be ``beyond += symrot_far(a) + ..;``, which tests whether the angles a, ..
+        are in the range of symrot_sin and symrot_cos. The Body then holds these angles.
+        """
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -1245,13 +1265,20 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Return a map with the keys (array, component) instead of ``q[2]``; single numbers also appear by name."""
+    """Return a map like ``values``, from names of inputs to values, with the key ("q", 2) instead of ``"q[2]"``.
+
+    A single number, such as ``"t"``, has two keys: ("t", 0) for its array in a batch, and ``"t"``.
+    """
     named = {component_of(place): value for place, value in values.items()}
     return named | {place: value for place, value in values.items() if "[" not in place}
 
 
 class ExactPoint(NamedTuple):
-    """A random point of exact fractions: inputs and outputs by component, and the arithmetic of the outputs."""
+    """A random point: the values of inputs and outputs as exact fractions, by component such as ("q", 2).
+
+    ``numbers`` is the arithmetic that evaluated the outputs. It holds the random values of functions, which the C text
+    must use too.
+    """
 
     numbers: AnyFunctions
     inputs: dict
@@ -1273,9 +1300,9 @@ def exact_point(specification):
 def check_formulas(name, kernel, data, point):
     """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
 
-    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions.
-    Each loop of a batch function must compute all outputs, except in the form SPANS, where each of the two loops
-    computes a part of the outputs.
+    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions. In
+    a batch function of shape "spans", two loops compute different outputs, each output once. In the other shapes, each
+    loop must compute all outputs.
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),

@@ -48,7 +48,10 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that reports a failure of this function; ``suffix`` is "" for doubles, "f" for floats."""
+        """Return the sentence that reports that the libm function of this entry failed its test.
+
+        ``suffix`` is "" for the function for doubles, such as sin, and "f" for that for floats, sinf.
+        """
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (
@@ -58,10 +61,11 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield pairs (0, x) with angles x up to 1e6 rad that test sine and cosine: near multiples of pi/2, and random.
+    """Yield angles x up to 1e6 rad at which sine and cosine are tested, as pairs (0, x).
 
-    Each x has ``digits`` binary digits. Near multiples of pi/2 the reduction of an angle loses digits. Beyond 1e6 rad
-    libraries are less accurate: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
+    The angles are near multiples of pi/2, and random. Tests of all functions take pairs (y, x); sine and cosine ignore
+    y = 0. Each x has ``digits`` binary digits. Near multiples of pi/2 the reduction of an angle loses digits. Beyond
+    1e6 rad libraries are less accurate: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
     """
     from mpmath import mp, mpf
 

@@ -213,7 +213,7 @@ def rates_of(data: Data) -> Program:
     Raises
     ------
     CertificateError
-        If the section is not as symrot prints it.
+        If the section ``rates`` of the certificate is missing or not in the form in which symrot prints it.
     """
     try:
         section = data["rates"]
@@ -232,7 +232,9 @@ def rates_of(data: Data) -> Program:
             tuple((str(name), _folded(parse(formula))) for name, formula in section["formulas"]),
         )
     except (InputError, KeyError, TypeError, ValueError, AttributeError) as reason:
-        raise CertificateError(f"expected the rates of a scene in the certificate, got others: {reason}") from None
+        raise CertificateError(
+            f"expected 'rates' in the certificate as symrot prints them, got other content ({reason})"
+        ) from None
 
 
 def _folded(node: Node) -> Node:

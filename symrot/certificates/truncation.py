@@ -72,7 +72,8 @@ def _interval(low: Fraction, high: Fraction) -> Any:
 def _undefined(name: str) -> Callable[..., Any]:
     def refuse(*arguments: Any) -> Any:
         raise InputError(
-            f"expected rates of + - * / and {', '.join(_SCALAR)}, whose truncation can be bounded, got {name}"
+            f"expected rates that contain only + - * / and the functions {', '.join(_SCALAR)}, so that the "
+            f"truncation error of a step can be bounded, got {name}"
         )
 
     return refuse
@@ -310,7 +311,7 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     ------
     InputError
         If the steps are so large, or the box so wide, that no bound is found, or if the rates contain a function
-        without a rule.
+        whose intervals symrot cannot compute.
     CertificateError
         If the method does not have its order.
     """

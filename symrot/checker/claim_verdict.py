@@ -49,10 +49,10 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on the usual reading (interpretation) of a claim, and the one on another true reading or None.
+    """Return the verdict on the usual reading (interpretation) of a claim, and the verdict on another, true reading.
 
-    The second result is None if the usual reading is true, or none is. The verdict then has a diagnosis, with
-    ``repair``.
+    The second verdict is there only if the usual reading is not true and another reading is; otherwise it is None. If
+    it is None, and ``repair`` is True, the verdict on the usual reading comes with a diagnosis of its faults.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -164,7 +164,8 @@ def _on_name(
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims.
 
-    The rule is decided for all functions u(t) and v(t).
+    The rule is decided for all functions u(t) and v(t). The None in the pair means that no decision on the claim as it
+    is written belongs to the verdict.
     """
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
@@ -188,7 +189,7 @@ def _was_near_relation(claim: Claim) -> bool:
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     """Return ``verdict``, on a false claim, with repairs that turn the claim into a relation that symrot derives.
 
-    If one edit gives no such relation, the verdict is returned unchanged.
+    If no single edit of the claim gives such a relation, the verdict is returned unchanged.
     """
     from symrot.checker.recognition.naming import verdict_near_relation
 
@@ -209,7 +210,10 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None."""
+    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None.
+
+    The None in the pair means that the verdict comes from recognising the claim, not from a decision of its equation.
+    """
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming import verdict_on_relation
@@ -220,7 +224,10 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; otherwise None."""
+    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; otherwise None.
+
+    The None in the pair means that no decision of the claim's own equation belongs to the verdict.
+    """
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.context.determinants import verdict_on_determinant
@@ -233,7 +240,8 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
     """Return (None, verdict) if a claim gives a formula for a quantity once its hypotheses are substituted; else None.
 
-    The hypotheses are abbreviations, such as ``c1 = cos(alpha)``.
+    The hypotheses are abbreviations, such as ``c1 = cos(alpha)``. The None in the pair means that the verdict comes
+    from recognising the formula, not from a decision of its equation.
     """
     expanded = claim.expanded
     if expanded is claim or expanded.hypotheses:
@@ -301,9 +309,9 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return a remark on a true claim if one side is defined everywhere and the other side is not: ``x == x**2/x``.
+    """Return the diagnosis "domain" for a true claim if only one side is defined everywhere, as in ``x == x**2/x``.
 
-    Otherwise return a diagnosis with the code "none".
+    Its text says which side needs which conditions. For any other claim, return a diagnosis with the code "none".
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

@@ -1,4 +1,8 @@
-"""Claims that are judged in another form: the repairs of the other form, brought back to the original claim."""
+"""The verdict on a claim that was judged in an equivalent form, with its repairs changed back to the typed form.
+
+For example, ``I_xy = a`` with I_xy = integral of x*y dm is judged as ``I_xy = -a``; the repair ``I_xy = -b`` becomes
+``I_xy = b``.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,10 +16,10 @@ __all__ = ["brought_back"]
 
 
 def brought_back(verdict: Verdict, original: Callable[[Relation], Relation], note: str) -> Verdict:
-    """Return the verdict on an original claim from that on an equivalent claim.
+    """Return the verdict on a claim from ``verdict``, that on an equivalent claim.
 
-    ``original`` changes a relation of the equivalent claim into one of the original claim; the repairs are changed by
-    it, and those that cannot be read are left out. ``note`` tells the user about the equivalent claim.
+    ``original`` changes an equation of the equivalent claim into one of the claim; it is applied to each repair. A
+    repair whose text is no single equation is left out. ``note`` tells the user about the equivalent claim.
     """
     repairs = [changed for repair in verdict.repairs if (changed := _brought_back(repair, original)) is not None]
     return replace(verdict, repairs=tuple(repairs), notes=(*verdict.notes, note))

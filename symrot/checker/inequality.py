@@ -73,7 +73,9 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
         return verdict
     domain = decide_equation(replace(equation, right=equation.left))
     if domain.verdict not in ("true", "conditional"):
-        return Verdict("undecided", reason="it is not known where both sides are real numbers")
+        return Verdict(
+            "undecided", reason="it is not known for which values of its letters both sides are real numbers"
+        )
     if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
         return replace(verdict_of_decision(domain, claim.text, 0.0), verdict="true")
     if _is_condition(claim):
@@ -82,7 +84,7 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
         return Verdict("false", counterexample=point)
     return Verdict(
         "undecided",
-        reason="no proof was found that left minus right has one sign, and no point where it fails",
+        reason="no proof of the inequality was found, and no point at which it is false",
     )
 
 
@@ -171,9 +173,10 @@ def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
 
 
 def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
-    """Return whether both sides of an equation are proven to be defined at a point, with its divisors and roots.
+    """Return whether both sides of an equation are proven to have real values at a point.
 
-    ``values`` are the values of the symbols there.
+    ``values`` gives the point: symbol -> value. The divisors in the equation must be nonzero, and the formulas under
+    its even roots not negative.
     """
     parts = [enclosure(side, values) for side in (equation.left, equation.right, *equation.divisors)]
     if any(part is None for part in parts) or any(part.a <= 0 <= part.b for part in parts[2:]):

@@ -11,10 +11,10 @@ from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
 from symrot.checker.context.context import Context, read_context
-from symrot.checker.copied_signs import with_plain_signs
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp, processor_seconds
+from symrot.checker.typed.copied_signs import with_plain_signs
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.units.conversion import measured_text, numbers_of_latex
 from symrot.checker.verdict import Verdict

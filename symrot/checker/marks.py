@@ -78,9 +78,9 @@ def _rows(side: Node) -> list[tuple[Node, ...]] | None:
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:
-    """Return a line for a terminal with a caret under each marked character of a text.
+    """Return a line for a terminal with a caret under each marked character of a piece of a text.
 
-    ``spans`` are the marked positions; the text is cut out of a longer one between ``start`` and ``end``.
+    The piece goes from ``start`` to ``end``. ``spans`` are the marked positions, counted in the whole text.
     """
     marks = (any(first <= place < last for first, last in spans) for place in range(start, end))
     return "".join("^" if mark else " " for mark in marks).rstrip()

@@ -150,10 +150,11 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return, in a tuple, the repair of the text ``source`` that puts the number ``right`` in place of ``digits``.
+    """Return (repair,): the text ``source`` with the correct number ``right`` in place of ``digits``.
 
-    The digits must stand before ``unit``: at their last place in the text if ``is_right``, else at the first one. The
-    tuple is empty if there is no such place.
+    The digits must stand before ``unit``. If they do so at several places, the last one is replaced if ``is_right``
+    (the wrong number is on the right side of the equation), else the first. The tuple is empty if there is no such
+    place.
     """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
@@ -163,9 +164,10 @@ def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool
 
 
 def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
-    """Return (digits, unit) of a number with a unit: the typed digits "157.08", and the name of rad/s.
+    """Return (digits, unit) of a tree that is a number times a unit: ("157.08", "unit_1") for 157.08 rad/s.
 
-    The texts are empty for any other tree, and if the digits do not match ``pattern``. ``source`` is the typed text.
+    The digits are those typed in ``source``; ``unit_1`` is the name that stands for the unit in the tree. Both are ""
+    for any other tree, and if the digits do not match ``pattern``.
     """
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
@@ -214,7 +216,7 @@ def _is_large_angle(node: Node) -> bool:
 
 
 def _degrees(tree: Node) -> Node:
-    """Return a tree in which large angles are treated as degrees and converted to radians."""
+    """Return a tree with sin(30*pi/180) for sin(30): numbers from 7 on in circular functions are read in degrees."""
     args = tuple(map(_degrees, tree.args))
     if _is_large_angle(tree):
         args = (product([tree.args[0], Node("name", "pi"), number(Fraction(1, 180))]),)

@@ -111,9 +111,10 @@ def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
 
 
 def _is_polynomial(claim: Claim, letter: Node) -> bool:
-    """Return whether both sides are sums of different powers of a letter, each on one side only, as in ``x^2 = 4``.
+    """Return whether both sides are sums of powers of a letter, and no power occurs twice in the equation: ``x^2 = 4``.
 
-    ``(x + 1)^2 = x^2 + 1`` and ``2x = 3x`` are meant as identities; so may be ``x + 2x = 4x``.
+    If the equation has a power twice, as ``2x = 3x`` or ``x + 2x = 4x``, or a bracket as ``(x + 1)^2 = x^2 + 1``, it
+    may be meant as an identity; the result is then False.
     """
     assert claim.relation is not None
     sides = [[] if side == number(0) else _exponents(side, letter) for side in claim.relation[1:]]

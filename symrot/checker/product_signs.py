@@ -50,7 +50,10 @@ def with_sign(context: Context, name: Node, sign: str) -> Context:
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return an equivalent claim for products of inertia with the minus sign: ``I_xy = -a`` for ``I_xy = a``."""
+    """Return a claim about I_xy = integral of x*y dm as one about I_xy = -integral of x*y dm, with -I_xy for I_xy.
+
+    The claim ``I_xy = a`` becomes ``I_xy = -a``.
+    """
     if claim.relation is None:
         return claim
     meanings = tuple(
@@ -64,15 +67,16 @@ def with_minus_sign(claim: Claim) -> Claim:
 def in_claim(verdict: Verdict) -> Verdict:
     """Return the verdict on the original claim from that on the claim of :func:`with_minus_sign`.
 
-    The repairs change their signs back, and a note names the convention.
+    In the repairs, I_xy becomes -I_xy again, the original convention; a note names this convention.
     """
     return brought_back(verdict, _changed, NOTE)
 
 
 def _changed(relation: Relation) -> Relation:
-    """Return an equation with the opposite sign of each product of inertia: ``I_xy = -a`` for ``I_xy = a``.
+    """Return an equation with the opposite sign of each product of inertia: ``L = -I_xy*w`` for ``L = I_xy*w``.
 
-    If a side is a single product of inertia, both sides change their signs, so that it has none.
+    If a side is nothing but a product of inertia, the equation is then multiplied by -1, so that this side has no minus
+    sign: ``I_xy = -a`` for ``I_xy = a``.
     """
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
@@ -86,7 +90,7 @@ def _negative(tree: Node) -> Node:
 
 
 def _is_product(tree: Node) -> bool:
-    """Return whether a tree is a product of inertia by its name: the name, a function of time, or a rate."""
+    """Return whether a tree is a product of inertia by its name: I_xy, I_xy(t), or the time derivative of one."""
     if tree.kind == "call" and tree.value == "diff":
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]

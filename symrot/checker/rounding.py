@@ -89,7 +89,10 @@ def _is_constant(node: Node) -> bool:
 
 
 def _begins_with(worked: Claim) -> bool:
-    """Return whether the digits of the value of ``worked`` begin with the printed ones, as for 2/3 and ``0.66..``."""
+    """Return whether the value of ``worked`` begins with the digits that the claim states, as 2/3 does with ``0.66..``.
+
+    ``worked`` has both: the exact ``value`` and the decimal text ``printed``.
+    """
     assert worked.value is not None
     places = len(worked.printed.partition(".")[2])
     half = number(Fraction(5, 10 ** (places + 1)))

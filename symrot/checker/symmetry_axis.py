@@ -38,7 +38,8 @@ def with_axis_z(claim: Claim) -> Claim:
 def in_claim(verdict: Verdict, axis: str) -> Verdict:
     """Return the verdict on the original claim from that on the claim of :func:`with_axis_z`.
 
-    ``axis`` is the axis of symmetry, x or y. The repairs get the names of the original claim, and a note says so.
+    ``axis`` is the axis of symmetry, x or y. The repairs get the names of the original claim again. A note says that
+    the axis is called z in derived formulas.
     """
     back = {new: old for old, new in TURNED[axis].items()}
     note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"

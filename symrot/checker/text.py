@@ -27,6 +27,7 @@ from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
+from symrot.checker.special_cases import for_complex_numbers, for_special_directions
 from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
@@ -52,8 +53,8 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
 
 NAMING = ("definition", "recognised")
-CALLS_FOR_ARRAYS = ("qmul(", "eye(")
-"""Calls that answers have only if the claim has one of them."""
+CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
+"""Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
 
 
 AS_TYPED = ("degrees",)
@@ -176,10 +177,12 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return ``verdict``, or "definition" for a text that has both letters and numbers with units: ``F = m a = 6 N``.
+    """Return the verdict on a text that may have both letters and numbers with units, as ``F = m a = 6 N`` has.
 
-    Such a text is an equation for its letters and no identity. In ``F = m a = 2 kg * 3 m/s^2 = 6 N``, the end without
-    letters is decided.
+    Such an equation holds for certain values of its letters and is no identity, so its verdict is "definition". If the
+    text ends with several sides of numbers with units, as ``F = m a = 2 kg * 3 m/s^2 = 6 N`` does, this end is judged
+    by itself; if it is false, the text is false. Any other text, and one that is true for all values of its letters,
+    has the given ``verdict``.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
@@ -206,10 +209,11 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units, by what ``measured`` says of these.
+    """Return the verdict on a text whose numbers have units, as ``measured`` reads them.
 
-    If units can be read in several ways, it is that on the reading that is true, or else on one whose units fit. The
-    other arguments are those of :func:`verdict_on_text`.
+    Units may be readable in several ways (g as gram or as an acceleration). The verdict "true" of any reading is
+    returned, otherwise the verdict on the first reading whose units are consistent, or on the first one. The other
+    arguments are those of :func:`verdict_on_text`.
 
     Raises
     ------
@@ -358,6 +362,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = for_special_directions(claim, for_complex_numbers(claim, verdict)) if plain else verdict
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
@@ -455,7 +460,7 @@ def _with_plain_arrays(source: str) -> str:
 
 
 def _relation_of(source: str) -> Relation | None:
-    """Return the equation that is the text of a repair; None if the text has words too."""
+    """Parse the text of a repair as an equation; return None if it is not one, but has words, for example."""
     try:
         return read_relation(source)
     except InputError:
@@ -591,7 +596,8 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
 def _depends_on_letters(claim: Claim) -> bool:
     """Return whether the value of a claim's left side depends on a letter, as that of sin²x + cos²x does not.
 
-    If it does, ``sin x = 1/2`` in a chain is no error but holds for certain values of x.
+    It matters for an equation in a chain such as ``y = sin x = 1/2``: if the value depends on a letter, ``sin x = 1/2``
+    is no error but holds for certain values of x.
     """
     left = claim.equation.left
     return not is_matrix(left) and bool(normal_form(left).free_symbols)

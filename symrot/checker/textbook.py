@@ -1,9 +1,9 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-Two rules tell an error of a document from a loss in extraction. First, another reading of the text (with characters
-put back) may change the printed side of a claim, but not the right result with which it is compared. Second, a loss
-explains a false claim only if the printed formula and the true one differ in nothing but characters of the kinds that
-were lost at this place.
+Each claim has the formula that the document prints on the left, and the right result on the right. A false claim is an
+error of the document, or its formula lost characters when the text was extracted. It counts as a loss under two rules.
+First, lost characters may be put back on the left side only. Second, the printed and the true formula must differ in
+nothing but characters of the kinds that were lost at this place.
 """
 
 from collections import Counter
@@ -58,10 +58,10 @@ class Finding:
     is_proposed : bool
         Whether the corrected formula was proposed by a person, and not found by the search for repairs.
     conditions : tuple of str
-        Conditions that the document does not state, and that quantities with their usual signs may break. A true
-        formula needs all of these conditions; a conditional formula needs any one of them.
+        Conditions that the document does not state, and that quantities with their usual signs may violate. A true
+        formula (verdict "true") needs all of them; one with the verdict "conditional" needs any one of them.
     words : str
-        The words for the conditions; empty if the formulas say enough.
+        Words for the conditions from the document's file; empty if it has none.
     """
 
     claim: dict[str, Any]
@@ -77,7 +77,7 @@ class Finding:
 
     @property
     def reason(self) -> str:
-        """A sentence that says why the claim is not simply true."""
+        """A sentence that says why the claim is false, true only under conditions, or undecided."""
         if self.outcome == "conditional":
             return "true if " + " or ".join(self.conditions)
         if self.verdict.diagnosis.code != "none":
@@ -105,9 +105,9 @@ def finding_of(
 ) -> Finding:
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    The ``proposal`` of a correction, a formula by place, may be empty. A claim that is false, but true under the
-    proposed ``condition``, is conditional. So is a true claim that divides by a number which the ``condition`` says may
-    be zero.
+    ``proposal`` gives corrected formulas by place, {"left": "m*g*l"} for example, where a place is "left", "right" or
+    the name of a definition; it may be empty. A claim that is false, but true under the proposed ``condition``, is
+    conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -226,9 +226,9 @@ lost with them."""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether ``other`` is the equation of a claim with characters put back that its printed side lost.
+    """Return whether the equation ``other`` differs from a claim only by characters put back on the claim's left side.
 
-    ``lost`` are the kinds of characters that the extraction loses.
+    The left side is what the document prints. ``lost`` are the kinds of characters that the extraction loses.
     """
     assert claim.relation is not None
     return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)

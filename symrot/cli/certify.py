@@ -110,8 +110,8 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds assume; they do not assume that a*b is rounded before c is added in a*b "
-        "+ c",
+        help="test only what the error bounds assume of the compiler and the processor; the compiler may then compute "
+        "a*b + c with one rounding instead of two",
     )
     json_option(parser)
 

@@ -25,7 +25,9 @@ def _inertia(options: Namespace) -> int:
     of_mesh = {key: getattr(options, key) for key in ("mass", "density", "scale") if getattr(options, key) is not None}
     if Path(path).suffix.lower() in SUFFIXES:
         if name:
-            raise InputError(f"{options.file}: expected a path without a link, since a mesh has no links, got {name!r}")
+            raise InputError(
+                f"{options.file}: expected the path of a mesh alone, got {name!r} after it; only robot files have links"
+            )
         return _print(mesh(path, **of_mesh, flip=options.flip), options)
     if of_mesh or options.flip:
         raise InputError("inertia: --mass, --density, --scale and --flip are options for a mesh, got a robot file")

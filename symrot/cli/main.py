@@ -202,7 +202,8 @@ def _emit(options: Namespace) -> int:
         raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
                          "(see `symrot emit --help`)")  # fmt: skip
     if options.cmake and (options.directory is None or options.target not in (None, "c") or not options.kernel):
-        raise InputError("--cmake: expected a KERNEL or SCENE in C and -o DIR (see `symrot emit --help`)")
+        raise InputError("--cmake: expected a KERNEL or SCENE, -o DIR and no --target other than c "
+                         "(see `symrot emit --help`)")  # fmt: skip
     for option in ("jacobian", "step", "order"):
         if getattr(options, option) is not None and not options.kernel:
             raise InputError(f"--{option}: expected a KERNEL or SCENE as well (see `symrot emit --help`)")
@@ -241,13 +242,13 @@ def _derive(options: Namespace) -> int:
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of NAMEs, --all and --check (see `symrot derive --help`)")
     if len(options.name) > 1 and (options.directory is None or options.step is not None):
-        raise InputError("derive: expected a folder, -o DIR, and no --step with several NAMEs")
+        raise InputError("derive: several NAMEs need a folder for their pages, -o DIR, and cannot have --step N")
     if options.step is None and options.detail:
-        raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
+        raise InputError("derive: --detail needs --step N, the step to print (see `symrot derive --help`)")
     if options.step is not None and not options.name:
         raise InputError("derive: expected a NAME with --step N (see `symrot derive --help`)")
     if options.format != "markdown" and options.check:
-        raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
+        raise InputError("derive: --check compares Markdown pages only; leave out --format")
     if options.format != "markdown" and options.all:
         if options.directory is None:
             raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")
@@ -448,7 +449,10 @@ def _derive_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--step", type=int, metavar="N", help="print one step of a derivation")
     parser.add_argument(
-        "--detail", action="store_true", help="with --step: show every expression between the two sides of its equation"
+        "--detail",
+        action="store_true",
+        help="with --step: show each intermediate expression that leads from the left side of the step's equation to "
+        "the right side",
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder for the pages of --all or of the NAMEs, and the folder that --check reads "
@@ -457,7 +461,10 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "claim", metavar="CLAIM", nargs="?", help="'left = right' as typed text, SymPy syntax or LaTeX, or a FILE.toml"
+        "claim",
+        metavar="CLAIM",
+        nargs="?",
+        help="'left = right' as typed text, SymPy syntax or LaTeX, or a FILE.toml with a table [[claim]] per claim",
     )
     from symrot.checker.language import help_text
 

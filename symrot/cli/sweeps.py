@@ -157,7 +157,8 @@ def _arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="N", default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--output", metavar="NAME", action="append", default=[],
                         help="quantity to write: at all times (energy), at one time in s (omega_1@end, axis_z@2.5), or "
-                        "its extreme (omega_3@max); may be repeated (default: omega@end)")  # fmt: skip
+                        "its extreme (omega_3@max); omega_1_by_weight@end is a derivative; may be "
+                        "repeated (default: omega@end)")  # fmt: skip
     parser.add_argument("--times", metavar="GRID", help=f"sample times in s, {_TIMES.replace('%', '%%')} "
                         "(default: the scene's own)")  # fmt: skip
     parser.add_argument("--statistics", metavar="NAME", action="append", default=[],
@@ -177,7 +178,7 @@ def _arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="address of a Dask scheduler whose workers to use instead, such as tcp://host:8786",
+        help="address of a Dask scheduler, such as tcp://host:8786: its workers compute the motions, not this machine",
     )
     parser.add_argument(
         "--chunk",

@@ -75,8 +75,9 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 def _units(quaternions: Floats) -> dd.Pair:
     """Return quaternions, shape (n, 4), divided by their norms, as double-double numbers.
 
-    The error of each component is less than a quarter of :data:`_DOUBT` times the step of the grid to which low parts
-    are rounded, so that the caller can see whether the rounding is in doubt.
+    The low parts of the result are later rounded to the multiples of GRID times the last bit of the high part
+    (:func:`_on_grid`). The error of each component is less than ``_DOUBT/4`` of such a multiple; this bound is part of
+    the one by which :func:`_on_grid` decides whether the rounding is certain.
     """
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
@@ -120,8 +121,9 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
     """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact numbers.
 
-    If the rounding of row i is in doubt, the row is replaced by ``exactly(i)``. The numbers passed have an error of at
-    most ``error`` plus a quarter of :data:`_DOUBT` times the grid step of the component.
+    Each low part is rounded to a multiple of GRID times the last bit of the high part. ``high + low`` may differ from
+    the exact numbers by ``error``, plus ``_DOUBT/4`` of this multiple. If with such an error row i could round to
+    another multiple, the row is replaced by ``exactly(i)``, which is computed from the exact numbers.
     """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
@@ -306,7 +308,7 @@ def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Flo
     records[turned, 26:40], records[turned, 12:26] = records[turned, 12:26], 0.0
     records[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
     records[:, 2] = turned
-    for k, value in enumerate(bodies[0].shapes(omega[:, axis - 2], omega[:, axis - 1])):
+    for k, value in enumerate(bodies[0].omega_rows(omega[:, axis - 2], omega[:, axis - 1])):
         records[:, 40 + k] = value
     attitude = start.reshape(-1, 8)[:, ::2]
     records[:, 49::4], records[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))

@@ -81,10 +81,9 @@ def joined(*names: str) -> str:
 def begin(name: str) -> list[library.Building]:
     """Start to compile the libraries of a closed form, and return the compilations, which run in the background.
 
-    ``name`` is the name of its C files, such as ``"free_body"``. A caller may do other work until it calls
-    :func:`load`.
-
-    There is one library for each name in :data:`PARTS`; a cached library is not compiled again.
+    ``name`` is the name of its C files without an ending, such as ``"free_body"``. There is one library for each of its
+    C files, ``free_body.c`` and ``free_body_at.c``: :data:`PARTS` has their endings and compiler flags. A cached
+    library is not compiled again. A caller may do other work until it calls :func:`load`.
 
     Raises
     ------

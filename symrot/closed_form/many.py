@@ -21,11 +21,12 @@ AT_ONCE = 1024  # motions per call of C, about 10 ms, after which Python can rea
 
 
 class Batch(NamedTuple):
-    """A batch of n motions of the closed form ``name``, given by the arguments of its C function `prepare`.
+    """A batch of n motions of the closed form ``name``, described by the arguments of its C function `prepare`.
 
     Each argument is an array of shape (k,) that all motions share, an array of shape (n, k), or None. For ``axial`` the
-    only argument is the complete record of constants. For ``spin_up`` there are two arguments: the numbers of each
-    motion, and an array with the axis and the limits that all motions share.
+    only argument has the values of all members of the C struct `axial`. For ``spin_up`` there are two: the 20 numbers
+    of each motion, and an array of four with the axis and the results of
+    :func:`symrot.closed_form.spin_up.compiled.limits`.
     """
 
     name: str
@@ -102,7 +103,12 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
 
 class _Linked(NamedTuple):
-    """The compiled loop over many motions, linked to the C functions of one closed form, whose addresses it calls."""
+    """The compiled loop over many motions, with the addresses of the C functions of one closed form.
+
+    The loop ``run`` calls the functions at the addresses ``prepare`` and ``at`` for each motion, with the constants of
+    the motion in a C array of the type ``record``. An address is 0, and ``table`` is 0, where a closed form has no such
+    part.
+    """
 
     run: Any
     prepare: int

@@ -200,8 +200,8 @@ def _field_axis(name: str) -> Callable[[Scene], int | None]:
     """Return a function from a scene to the index of the body axis to which a vector of its only torque is parallel.
 
     ``name`` is the name of the vector: ``"center_of_mass"`` of a gravity torque, or ``"angular_momentum"`` of a rotor.
-    The function returns None if the vector is not parallel to a body axis. It gives heavy tops and gyrostats the entry
-    ``axis`` of their row in the table.
+    The function returns None if the vector is not parallel to a body axis. It is the value of ``axis`` in the
+    ClosedForm of heavy tops and of gyrostats.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

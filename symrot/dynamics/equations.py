@@ -201,7 +201,8 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 def equations_of_motion(structure: Structure) -> Equations:
     """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free.
 
-    If a torque has modes that are held (its guards stay at zero), the equations are those of :func:`sliding`.
+    Some torques jump where a formula, their guard, changes its sign. If the structure says that guards stay at zero, as
+    for a body held at rest by dry friction, the equations are those of :func:`sliding`.
     """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
@@ -236,12 +237,11 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     omega_1 in sign(omega_1); its mode is the symbol that stands for this sign. While the motion slides, each guard
     stays at zero; a body held at rest by dry friction is an example.
 
-    A guard is the formula whose sign the torque depends on, and its mode is the symbol that stands for this sign. The
-    modes get the values that keep the guards at zero: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
-    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). The
-    resulting equations contain these formulas of the modes as definitions. Motions near the surfaces return to them
-    while all eigenvalues of B have negative real parts, that is, while all of A. Hurwitz's determinants of B are
-    positive; the determinants are the ``attraction`` of the result.
+    The modes then have the values that keep the guards at zero. The rates are linear in the modes s, so ``dg/dt = a + B
+    s = 0`` gives ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex
+    combination). The result has these values as its ``modes`` and, before the other definitions, as ``definitions`` of
+    the symbols. Motions near the surfaces return to them while all eigenvalues of B have negative real parts, that is,
+    while all of A. Hurwitz's determinants of B are positive; the determinants are the ``attraction`` of the result.
 
     Raises
     ------

@@ -20,6 +20,7 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.results.samples import MotionSamples
+from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import QUANTITIES, read_tolerance
 
@@ -101,6 +102,12 @@ class EnsembleMember(MotionSamples):
         quaternion: Floats = self._ensemble.quaternion[self._number]
         return quaternion
 
+    @property
+    def sensitivities(self) -> Sensitivities | None:
+        """Derivatives by initial values and constants, shape (m, .., k), if the ensemble was computed with them."""
+        every = self._ensemble.sensitivities
+        return None if every is None else every.of(self._number)
+
     @cached_property
     def scene(self) -> Scene:
         """The scene of this motion: the ensemble's scene, with this motion's own initial state and constants."""
@@ -132,6 +139,9 @@ class Ensemble(MotionSamples):
         Steps, evaluations and time.
     tolerance : float
         Tolerance with which the motions were computed.
+    sensitivities : Sensitivities or None
+        Derivatives by initial values and constants, if they were requested: arrays of the shapes (n, m, 3, k),
+        (n, m, 4, k) and (n, m, 3, k) for k variables.
 
     Examples
     --------
@@ -140,13 +150,16 @@ class Ensemble(MotionSamples):
     (1, 2, 4)
     """
 
-    def __init__(self, problem: Problem, followed: Followed, seconds: float) -> None:
+    def __init__(
+        self, problem: Problem, followed: Followed, seconds: float, sensitivities: Sensitivities | None = None
+    ) -> None:
         self._source = Source(problem.variation, problem.plan)
         self.t, self.tolerance = problem.times, problem.tolerance
         self._omega, self._quaternion = followed.omega, followed.quaternion
         self.methods, self.messages = followed.methods, followed.messages
         self.status = np.array([-1 if message else 0 for message in followed.messages], dtype=np.int64)
         self.stats = EnsembleStats(followed.steps, followed.evaluations, seconds)
+        self.sensitivities = sensitivities
 
     def __len__(self) -> int:
         return len(self.omega)
@@ -298,6 +311,7 @@ def propagate_ensemble(
     method: str = "auto",
     tolerance: float | None = None,
     workers: int = 1,
+    sensitivities: Sequence[str] | None = None,
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
@@ -334,6 +348,10 @@ def propagate_ensemble(
         Tolerance for the error of each trajectory; default: the tolerance of the scene.
     workers : int
         Number of threads that compute motions.
+    sensitivities : sequence of str, optional
+        Initial values and constants by which all motions are differentiated: ``"omega"``, ``"attitude"``, and numbers
+        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are ``sensitivities`` of the
+        ensemble; if they stop early, so does the motion. For every method they are computed by Taylor series.
 
     Returns
     -------
@@ -365,4 +383,12 @@ def propagate_ensemble(
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
     aim = own if tolerance is None else read_tolerance(tolerance)
     problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
-    return Ensemble(problem, follow(problem, method), perf_counter() - began)
+    derivatives, reasons = None, ("",) * len(variation)
+    if sensitivities is not None:
+        from symrot.ensemble.sensitivities import follow_sensitivities
+
+        derivatives, reasons = follow_sensitivities(problem, sensitivities)
+    followed = follow(problem, method)
+    messages = tuple(own or reason for own, reason in zip(followed.messages, reasons, strict=True))
+    followed = followed._replace(messages=messages)
+    return Ensemble(problem, followed, perf_counter() - began, derivatives)

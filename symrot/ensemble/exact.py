@@ -2,7 +2,8 @@
 
 A batch holds the constants of the motions of many trajectories as arrays, from which one call of C computes all
 samples. Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are computed one
-by one, each as a single motion. If no constant varies, these motions share the constants of the body and its torques.
+by one, each as a single motion. If only initial states vary, these single motions share the constants of the body and
+its torques.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -102,7 +103,9 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 class Solved(NamedTuple):
     """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays.
 
-    ``batch`` is None if the trajectories are computed one by one; ``usual`` says for which rows the arrays are exact.
+    ``batch`` is None if the trajectories are computed one by one. ``usual`` says for which rows (or, as one value,
+    whether for all) the arrays give the same bits as a single motion; trajectories with unusual numbers are computed as
+    such.
     """
 
     form: ClosedForm
@@ -280,7 +283,7 @@ class _Part(NamedTuple):
     def constant(self, name: str) -> Any:
         """Return the constant ``name`` of the plan: one Fraction, or an array if it varies.
 
-        The array has one value for each trajectory of the part.
+        The array has one value for each trajectory of this part of the ensemble, in the order of ``rows``.
         """
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
@@ -295,9 +298,10 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield groups of the trajectories ``rows``, all of one closed form: (indices, batch, rows for which it is valid).
+    """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
 
-    The batch (the constants as arrays) is None if the motions of the group must be computed one by one.
+    ``batch`` holds the constants of the group as arrays; it is None if the motions must be computed one by one.
+    ``usual`` says for which of the indices the batch gives the same bits as a single motion.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:

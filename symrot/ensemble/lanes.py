@@ -4,7 +4,8 @@ A SIMD instruction computes with two, four or eight doubles at once; a lane is t
 length and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`, and each motion has steps of
 its own length. When the motion in a lane has ended, the lane takes the next motion. Lanes are independent: the bits of
 a motion's samples do not depend on the other motions, on its lane or on the number of threads, and a motion that stops
-early does not affect the others. A leg is the part of a motion after its start, or the part before it.
+early does not affect the others. Sample times may lie on both sides of the initial time; the code calls the part of a
+motion on one side a leg.
 """
 
 import ctypes
@@ -152,9 +153,10 @@ class Lanes:
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of ``unit``.
+        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of time/``unit``.
 
-        ``y`` are the N states at this time, ``p`` the parameters. Tests compare them with other derivatives.
+        Row k holds the k-th derivatives times ``unit^k/k!``. ``y`` are the N states at this time, ``p`` the parameters.
+        The function serves tests, which compare the rows with derivatives from SymPy.
         """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))

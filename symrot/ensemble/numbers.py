@@ -4,7 +4,7 @@ A parameter, such as ``(B - C)/A``, is a formula in the constants of the scene. 
 evaluated once.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -12,10 +12,11 @@ import numpy as np
 from symrot.dynamics.structure import PrincipalInertia
 from symrot.ensemble.variation import PRINCIPAL, Variation
 from symrot.formula import exact_numbers as number
-from symrot.formula.tree import names
+from symrot.formula.tree import Node, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import folded, value_of
+from symrot.propagation.sensitivities.variables import STEP, slopes
 from symrot.propagation.steppers.stepping import Floats
 
 __all__ = ["Numbers"]
@@ -51,12 +52,11 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), exact except for one rounding.
+        """Return the values of k kernel parameters for each of n trajectories, shape (n, k), exact except for one
+        rounding.
 
-        Raises
-        ------
-        OverflowError
-            If a parameter exceeds the range of a double.
+        A kernel gets the scene's constants, and formulas in them, as these parameters. A parameter that depends on the
+        time at which the kernel's clock shows 0 is evaluated at ``epoch``, s.
         """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
@@ -71,6 +71,47 @@ class Numbers:
                 values[:, k] = self._each(folded(node, fixed), names(node))
         return values
 
+    def slopes(self, parameters: Parameters, moved: Mapping[str, Fraction], variable: str) -> dict[str, Floats]:
+        """Return the derivatives of kernel parameters by a variable for each trajectory, shape (n,), by name.
+
+        Parameters
+        ----------
+        parameters : pairs of name and formula
+            The parameters; those that do not depend on the variable are left out of the result.
+        moved : mapping
+            The derivatives, by the variable, of the constants of the plan, such as ``{"weight": 1}``; the same for all
+            trajectories.
+        variable : str
+            The name of the variable, for messages.
+
+        Raises
+        ------
+        InputError
+            If a parameter of a trajectory does not depend smoothly on the variable.
+        """
+        scene = {"pi": number.PI, **Plan(self._variation.scene, self._plan.structure, ()).constants}
+        fixed = {name: value for name, value in scene.items() if name not in self._columns}
+        result: dict[str, Floats] = {}
+        for name, node in parameters:
+            used = names(node)
+            if used.isdisjoint(moved):
+                continue
+            own = [key for key in self._columns if key in used]
+            if node[0] == "symbol":
+                result[name] = np.full(len(self._chosen), float(moved[node[1]]))
+                continue
+            if not own:
+                slope = _slope(node, fixed, moved, variable)
+                if slope:
+                    result[name] = np.full(len(self._chosen), float(slope))
+                continue
+            table = np.stack([self._columns[key] for key in own], axis=1)
+            rows, places = np.unique(table, axis=0, return_inverse=True)
+            exact = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
+            values = np.array([float(_slope(node, constants, moved, variable)) for constants in exact])
+            result[name] = values[places.ravel()]
+        return result
+
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
         """Return the values of the formula ``node``, one for each trajectory.
 
@@ -82,3 +123,18 @@ class Numbers:
         exact = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
         values: Floats = np.array([float(value_of(node, constants)) for constants in exact])[places.ravel()]
         return values
+
+
+def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
+    """Return the derivative of a formula in constants by a variable, by which the constants have the slopes ``moved``.
+
+    ``variable`` is its name, for messages.
+    """
+    ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
+    size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
+
+    def values(change: Fraction) -> Mapping[str, Fraction]:
+        moving = {name: constants[name] + change * slope for name, slope in moved.items() if name in constants}
+        return {"": value_of(node, {**constants, **moving})}
+
+    return slopes(values, size * STEP, variable).get("", Fraction(0))

@@ -291,7 +291,9 @@ def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | Non
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    """Return a quaternion of four doubles divided by its norm, as fractions; the norm is then 1 to 2^-200."""
+    """Return a quaternion of four doubles divided by its norm, as fractions; the norm is then 1 with an error below
+    2^-200.
+    """
     q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
     return q0, q1, q2, q3
 
@@ -427,9 +429,10 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def constant_places(scene: Scene) -> dict[str, Place]:
-    """Return the places of all constants that may vary in a scene, as a dict by the constant's name in the plan.
+    """Return a map from each constant that may vary to its place in the scene: inertia, or torque, field and entry.
 
-    Examples of names are ``I_xx``, ``weight`` and ``torque2_stiffness``.
+    The names are those in the plan, such as ``I_xx``, ``weight`` and ``torque2_stiffness``. Example: the stiffness of
+    the second torque has the place ``(1, "stiffness", None)``.
     """
     places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):

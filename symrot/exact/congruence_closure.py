@@ -52,9 +52,11 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield pairs of the inverse functions and logarithms ``names`` that are proven equal, or to have the sum pi/2.
+    """Yield pairs of members of ``names`` that are proven equal, or to have the sum pi/2, as asin(x) and acos(x).
 
-    Each pair is yielded as (one, its value in terms of the other, the polynomial rings in which the proof computes).
+    ``names`` are the inverse functions and logarithms in the formulas; each is a variable of its own in a polynomial
+    ring. Each pair is yielded as (one, its value in terms of the other, the polynomial rings in which the proof
+    computes). ``hypotheses`` are expressions that are zero, and ``domain`` are formulas that are not negative.
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

@@ -219,7 +219,7 @@ def _move_within(
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
     """Return the symbols and functions of time that occur only as angles, inside sines and cosines.
 
-    Multiples of pi are simple values for them.
+    The search for a simple counterexample gives them multiples of pi as values, for which sine and cosine are simple.
     """
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
@@ -335,9 +335,9 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
 
 
 def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return pairs (sine, cosine) as simple values of an angle.
+    """Return the pairs (sine, cosine) that the search for a counterexample tries first for an angle.
 
-    Its multiples of pi/2, and (3/5, 4/5) and (4/5, 3/5).
+    They belong to 0, pi/2, pi and 3 pi/2, and to the two acute angles of the triangle with the sides 3, 4 and 5.
     """
     points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
     return tuple(tuple(map(Fraction, point.split())) for point in points)

@@ -129,7 +129,7 @@ class _FormulaCase(Case):
     """An equation between formulas under decision, with what the stages have proven about it.
 
     The formulas may be complex. The caller knows that some point satisfies the hypotheses. ``normal_forms`` maps the
-    numbers of entries to the normal forms of left - right.
+    index of an entry of the sides (0 for a scalar) to the normal form of left - right.
     """
 
     normal_forms: dict[int, Expr] = field(default_factory=dict)
@@ -158,7 +158,10 @@ class _FormulaCase(Case):
             return Decision("true", self.conditions)
         nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
         if nowhere is not None:
-            raise InputError(f"expected sides that are real numbers somewhere, but {nowhere} holds at no real point")
+            raise InputError(
+                "expected sides that are real numbers somewhere, "
+                f"but the condition '{nowhere}', which they need, holds at no real point"
+            )
         nonzero = [Need(condition.lhs, "!= 0") for condition in self.conditions if isinstance(condition, Ne)]
         if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
             return Decision("undecided", self.conditions, stopped_by=tuple(need.formula for need in needs))
@@ -183,7 +186,7 @@ def witness(case: _FormulaCase) -> None:
 def leave_open(case: _FormulaCase) -> Decision:
     """Return the verdict "undecided", with the terms that prevent a decision, such as nested roots.
 
-    This is the last stage, which decides what all others leave open.
+    This is the last stage. An equation reaches it if no other stage could prove or refute it.
     """
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)

@@ -89,11 +89,13 @@ class Case(ABC):
     residuals : list of Ratio
         left - right of each entry.
     unproven : list of int
-        Numbers of the entries for which no proof of equality is known.
+        Indices of the entries for which no proof of equality is known.
     proof_rings : tuple of FormulaRing
-        Further rings in which entries were proven; their divisors become conditions.
+        The other rings that the proofs of single entries used so far, collected before it is known whether all entries
+        can be proven.
     rings : tuple of FormulaRing
-        Rings other than ``ring`` whose divisors, assumed to be nonzero, are among the ``conditions``.
+        The other rings on which the verdict relies, set when a stage has proven all entries. Their divisors, assumed to
+        be nonzero, are among the ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None
@@ -115,15 +117,16 @@ class Case(ABC):
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
         """Return the conditions of a verdict, relations under which the proof of an equation is valid.
 
-        They say where both sides are defined, and that divisors in the further polynomial ``rings``, in which proofs
-        computed, are not zero.
+        They say where both sides are defined, and that no divisor in ``rings`` is zero. ``rings`` are the polynomial
+        rings, other than that of the case, in which the proof computes.
         """
 
     @abstractmethod
     def confirmed(self) -> Decision:
-        """Return the verdict "true" for proven sides if a point is known where both are defined, else "undecided".
+        """Return the verdict "true" if a point is known where both sides are defined, else "undecided".
 
-        An equation whose sides are defined nowhere would be true of nothing.
+        It is called once all entries of the sides are proven equal. Without such a point the sides may be defined
+        nowhere, and the equation would be true of nothing.
         """
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
@@ -189,7 +192,10 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Return a decision, normally "true", if all entries of an equation are proven equal; None if some are not."""
+    """Return a decision if all entries of the two sides are proven equal; None if some are not.
+
+    The decision is "true", or "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`).
+    """
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -204,9 +210,11 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return a decision, normally "true", if the unproven entries are equal once arguments of functions are simplified.
+    """Return a decision if all entries of the two sides are equal once the arguments of functions are simplified.
 
-    Otherwise return None. See :mod:`symrot.exact.plain_arguments`.
+    Otherwise return None. The entries that earlier stages have proven equal are not tried again. The decision is
+    "true", or "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`). See
+    :mod:`symrot.exact.plain_arguments`.
     """
     ring = case.ring
     try:
@@ -223,9 +231,11 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return a decision, normally "true", if unproven entries are equal once equal inverse functions are merged.
+    """Return a decision if all entries of the two sides are equal once equal inverse functions get one variable.
 
-    Otherwise return None. See :mod:`symrot.exact.congruence_closure`.
+    An example is ``f(asin(x)) = f(pi/2 - acos(x))``. Otherwise return None. The entries that earlier stages have proven
+    equal are not tried again. The decision is "true", or "undecided" if no point is known where both sides are defined
+    (:meth:`Case.confirmed`). See :mod:`symrot.exact.congruence_closure`.
     """
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]

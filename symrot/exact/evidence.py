@@ -23,6 +23,10 @@ class Counterexample:
         Row and column, from 1, of the entry of a matrix that differs.
     left, right : Expr or str
         The exact values of the two sides, as text if that is clearer, such as ``"1/3 = 0.333333333333.."``.
+    values : dict of str to str
+        ``point`` as text: each name with its value.
+    lhs, rhs : str
+        ``left`` and ``right`` as text.
 
     Examples
     --------

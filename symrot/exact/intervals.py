@@ -49,7 +49,7 @@ def _refuse(outside: bool) -> None:
 def _root(x: Any) -> Any:
     _refuse(x.b < 0)
     if not x.a >= 0:
-        raise ValueError("expected a nonnegative number under a root")
+        raise ValueError(f"expected a number under a root that is proven nonnegative, got one between {x.a} and {x.b}")
     return iv.sqrt(x)
 
 

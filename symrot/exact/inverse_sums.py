@@ -51,8 +51,9 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
     """Prove that the polynomial ``numerator`` of the ring, such as the numerator of left - right, is zero.
 
-    Return the other rings in which the proof computes, or None if no proof was found. The tuple is empty if the
-    relations of ``ring`` suffice. The proof holds where no divisor of the other rings is zero.
+    Return None if no proof was found. Otherwise return the polynomial rings in which the proof computes, besides
+    ``ring``: those of sines, cosines and exponentials of differences such as ``asin(x) + acos(x) - pi/2``. They are
+    few, or none if the relations of ``ring`` suffice. The proof holds where no divisor in these rings is zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -67,10 +68,11 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions (:class:`Lift`), each of which suffices to make a factor of the polynomial ``numerator`` zero.
+    """Yield conditions, each of which suffices to make a factor of the polynomial ``numerator`` zero.
 
-    They are conditions on sines, cosines or exponentials of a factor that contains inverse functions or logarithms.
-    With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
+    A factor with inverse functions, such as asin(x) + acos(x) - pi/2, is zero if its sine is 0 and its cosine 1; one
+    with logarithms, if its exponential is 1. Such a condition is a :class:`Lift`: polynomials in another ring that must
+    be zero. With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
     """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
@@ -101,8 +103,8 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 class PrincipalValueProof:
     """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
 
-    The proof computes in the polynomial ``rings``. So ``asin(sin(x)) - x`` is zero where pi/2 - x and pi/2 + x are >=
-    0.
+    For ``asin(sin(x)) - x``, ``nonnegative`` has pi/2 - x and pi/2 + x: the expression is zero where x is between -pi/2
+    and pi/2. ``rings`` are the polynomial rings in which the proof computes; no divisor in them may be zero.
     """
 
     nonnegative: tuple[Expr, ...]
@@ -111,11 +113,11 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that a factor ``asin(S) - w`` of a polynomial is zero for certain w, if ``S = sin w`` is proven.
+    """Return a proof that ``numerator`` is zero where an angle is a principal value, as asin(sin(x)) - x is; or None.
 
-    Factors with acos, atan and atan2 are proven likewise; the result is None if there is no factor of this form.
-    The difference is zero exactly where w is a principal value: in [-pi/2, pi/2] for asin, in [0, pi] for acos,
-    between -pi/2 and pi/2 for atan. ``atan2(r sin w, r cos w) - w`` is zero for w in (-pi, pi] and positive r.
+    The polynomial must have a factor ``asin(S) - w``, and S must be provable to be sin(w). Such a factor is zero
+    exactly where w is a principal value: in [-pi/2, pi/2] for asin. Factors with acos (w in [0, pi]), with atan (w
+    between -pi/2 and pi/2) and ``atan2(r sin w, r cos w) - w`` (w in (-pi, pi], positive r) are proven likewise.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
@@ -148,8 +150,9 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
     """Return a proof of where a combination of two inverse functions is zero, as ``asin(3*x - 4*x^3) - 3*asin(x)`` is.
 
-    If S is proven to be the sine of w = 3 asin(x), the difference is zero exactly where w lies in [-pi/2, pi/2]. These
-    bounds of w are bounds of x. Return None for other combinations.
+    ``factor`` is the combination, a polynomial of ``ring`` in the variables ``names``. In the example, S = 3*x - 4*x^3
+    is proven to be the sine of w = 3*asin(x). So the difference is zero exactly where w lies in [-pi/2, pi/2], and
+    these bounds of w are bounds of x, which the proof lists. Return None for other combinations.
     """
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
     leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
@@ -172,7 +175,11 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 
 
 def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
-    """Return formulas of the argument ``inner`` that are nonnegative where the inverse function lies in [low, high]."""
+    """Return formulas that are nonnegative where the value of ``inner``, an asin, acos or atan, lies in [low, high].
+
+    They are bounds of its argument, one for each end that is not an end of the function's range anyway: for asin(x) in
+    [-pi/6, pi/6], they are x + 1/2 and 1/2 - x.
+    """
     function, least, most = _PRINCIPAL[type(inner)]
     sign = -1 if isinstance(inner, acos) else 1  # acos decreases
     ends = []

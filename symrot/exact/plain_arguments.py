@@ -50,9 +50,10 @@ def with_plain_arguments(
 
 
 def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return (forms, rings): for each argument its normal form, the same form for arguments that are proven equal.
+    """Return (forms, rings): for each argument of a function its normal form, the same one for arguments proven equal.
 
-    The rings are those in which such proofs compute.
+    ``arguments`` come from all functions in some formulas, as x and 2*y from sin(x) + f(2*y). ``rings`` is one tuple of
+    all polynomial rings, besides ``ring``, in which the proofs of equality compute.
     """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []

@@ -86,9 +86,10 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield the chain ``way``, which leads from ``start`` to its last expression, from there back to ``start``.
+    """Yield the links of a chain from its end back to ``start``; ``way`` is the chain from ``start`` to that end.
 
-    Each reason stays between the two expressions that it explains.
+    For a = b = c, with ``start`` a and the links to b and c, the results are links to b and to a. Each reason stays
+    between the two expressions that it explains.
     """
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):

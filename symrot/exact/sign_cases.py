@@ -27,15 +27,17 @@ Constraint = tuple[int, frozenset[int]]
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is zero for all signs that the absolute values in it can have.
+    """Return whether a numerator is zero for all signs that the expressions inside absolute values can have.
 
-    ``numerator`` is a polynomial of the ring in normal form. In ``|k| |m| - k m`` next to ``sqrt(k m)``, k and m have
-    equal signs, and both cases give zero.
+    ``numerator`` is a polynomial of the ring in normal form. An example is ``|k| |m| - k m`` in formulas that also
+    contain ``sqrt(k m)``: there k and m have equal signs (this is a constraint), and it is zero for both positive and
+    both negative.
 
     Notes
     -----
-    At every point there is a choice of signs s with ``|f| = s f`` that meets all constraints: the signs of the f that
-    are not zero, and for the others the signs that the constraints ask for.
+    The method tries all signs that satisfy the constraints of :func:`_constraints`. This is sound because at every
+    point there are signs s with ``|f| = s f`` that satisfy them: the sign of f where f is not zero, and where f is zero
+    the sign that makes the constraint true.
     """
     insides = _insides(ring, numerator)
     if not 1 <= len(insides) <= MOST_SIGNS:
@@ -65,10 +67,11 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
-    """Yield conditions (sign, variables): the product of the signs of these polynomials f is ``sign``.
+    r"""Yield constraints (sign, variables) on the signs of the expressions f inside absolute values.
 
-    They follow because no radicand of a square root is negative: sqrt(k m) gives (1, {k, m}). ``insides`` maps the
-    variable of each ``|f|`` to f.
+    ``insides`` maps the variable of each ``|f|`` to f. The product of the signs of the f of the ``variables`` is
+    ``sign``. The constraints follow because no radicand of a square root is negative: sqrt(k m) gives (1, {variable of
+    \|k\|, variable of \|m\|}).
     """
     radicands = [
         ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
@@ -95,11 +98,12 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return constraints on signs such that, at every point, one choice of signs satisfies all of them.
+    """Return those ``constraints``, in order, that one choice of signs can satisfy together at every point.
 
-    The other constraints are left out. Where a polynomial is zero, its sign can be chosen to satisfy a constraint, but
-    maybe not two constraints. So two of the constraints in the result share only polynomials that are nowhere zero,
-    because formulas divide by them.
+    A constraint is (sign, variables); ``insides`` maps the variable of each ``|f|`` to f. Where f is zero, its sign may
+    be chosen to satisfy one constraint, but maybe not two. So a constraint is left out if it shares a variable with an
+    earlier one, unless the f of this variable is nowhere zero. An f that is a divisor of a formula counts as nowhere
+    zero, since the formula is only defined there.
     """
     divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}

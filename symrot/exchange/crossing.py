@@ -69,13 +69,18 @@ def require_boundary(surface: Surface, where: str) -> str:
     searched = len(surface.triangles) <= MOST_SEARCHED and _search_pairs(surface, boxes, where)
     parts = f"{count} shells" if count > 1 else "one shell"
     pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
-    return f"closed, {parts}; on {lines} of {len(chosen)} test lines the surface separates inside from outside; {pairs}"
+    return (
+        f"the surface is closed ({parts}); {lines} of {len(chosen)} straight lines cross it alternately inwards and "
+        f"outwards, as they must, and the others meet an edge; {pairs}"
+    )
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the indices of the triangles through which test lines pass: the largest of each shell, and some others.
+    """Return the indices of triangles through which straight lines test whether the surface separates inside from
+    outside.
 
-    ``numbers`` gives the shell of each triangle, and ``count`` is the number of shells.
+    They are the largest triangle of each shell and others at equal distances in the list, so many that the test takes a
+    few seconds at most. ``numbers`` gives the shell of each triangle, and ``count`` is the number of shells.
     """
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
@@ -89,9 +94,12 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Test a line through a triangle; return 1 if it passes the test, 0 if every line tried meets an edge.
+    """Test a line through the triangle with the index ``triangle``; return 1 if it passes, 0 if no line could be
+    tested.
 
-    A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised.
+    A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised, with ``where`` as
+    the place of the surface. A line that meets an edge cannot be tested; three points of the triangle are tried in
+    turn.
     """
     own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
@@ -150,10 +158,10 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
 
 
 def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
-    """Search all pairs of triangles for a crossing and return True; return False if there are too many pairs.
+    """Raise InputError if two triangles cross; return whether all pairs were examined, False if there are too many.
 
-    Raise InputError if two triangles cross. Only proper crossings count: an edge of one triangle passes through the
-    interior of another with which it shares no vertex. Triangles that only touch, up to rounding errors, do not cross.
+    Only proper crossings count: an edge of one triangle passes through the interior of another with which it shares no
+    vertex. Triangles that only touch, up to rounding errors, do not cross.
     """
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))

@@ -307,7 +307,8 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     for key, values in _CHANGING.items():
         if settings.get(key, values[0]) not in values:
             raise InputError(
-                f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, which changes inertials"
+                f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, with which MuJoCo changes the "
+                "mass properties in <inertial>; set the value as expected, and the mass properties as you need them"
             )
     sequence = settings.get("eulerseq", "xyz")
     if not re.fullmatch("[xyzXYZ]{3}", sequence):

@@ -162,10 +162,11 @@ def _bound(powers: Exponents) -> float:
 
 
 def approximate_moments(surface: Surface, degree: int) -> VolumeMoments:
-    """Return the integrals up to a degree in doubles, each with a bound of its error.
+    """Return the integrals over the enclosed volume up to a degree in doubles, each with a bound of its error.
 
-    The corner a, measured from the middle of the surface, and the two edges at a give the determinant. So triangles
-    that are small and far from the middle lose no digits.
+    Each triangle contributes an integral over the tetrahedron that it forms with the middle of the surface's bounding
+    box. Its volume is a determinant of three vectors: one corner, measured from this middle, and the two edges at this
+    corner. Edges instead of corners keep all digits of triangles that are small and far from the middle.
     """
     lowest, highest = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
     middle = lowest / 2 + highest / 2

@@ -99,7 +99,10 @@ class Picture:
         self, view: View | Plane, points: ArrayLike, label: str = "", style: str = "ink", head: bool = True,
         out: float = 11.0,
     ) -> None:  # fmt: skip
-        """Draw an arc with an arrow head at its end, and a label outside its middle."""
+        """Draw a curve through ``points`` with an arrow head at its end if ``head``, and ``label`` beside its middle.
+
+        The label lies on the outer, convex side of the curve, ``out`` units of the drawing away from it.
+        """
         places = view.project(points)
         self._path(places, style)
         if head:

@@ -76,10 +76,10 @@ def sized(name: str) -> Solid:
 
 
 def surface_of(body: Solid) -> Surface:
-    """Return the surface of a solid: one coordinate of the formula for its points after the other is set to its limits.
+    """Return the surface of a solid as lines to draw and triangles that hide the lines behind them.
 
     A solid is described by a formula for the position of its points in coordinates with limits, such as radius, angle
-    and height for a cylinder.
+    and height for a cylinder. On a face one coordinate is at one of its limits; along an edge, all but one.
     """
     symbols = [symbol for symbol, _, _ in body.limits]
     function = lambdify(symbols, list(body.position), "numpy")

@@ -323,7 +323,10 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the value of a NumPy scalar or SymPy number, converted to a double, as an angle in rad."""
+    """Return the double nearest to a NumPy scalar or SymPy number, as an :class:`Angle` without a multiple of pi.
+
+    All readers of numbers return an Angle, since a number in a scene may be an angle in degrees.
+    """
     return _from_float(float(value))
 
 
@@ -344,9 +347,10 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number in the form ``rational + half_turns * pi``; raise InputError if the value is not a number.
+    """Return a number as an :class:`Angle`, the pair (rational, half_turns) of ``rational + half_turns * pi``.
 
-    ``where`` (file and key) and ``expect`` (what is expected) are texts for the message.
+    ``where`` (file and key) and ``expect`` (what is expected) are texts for the message of the InputError that is
+    raised if the value is not a number.
     """
     kind = type(value)
     if not isinstance(value, bool):

@@ -79,7 +79,7 @@ class Polynomial:
         if not divisor:
             raise ZeroDivisionError("division by zero")
         if set(divisor.terms) != {()}:
-            raise ValueError("expected a number as the divisor of a polynomial, got a polynomial with generators")
+            raise ValueError("expected a number as the divisor of a polynomial, got a polynomial that is not constant")
         inverse = 1 / divisor.terms[()]
         return Polynomial({monomial: coefficient * inverse for monomial, coefficient in self.terms.items()})
 
@@ -170,12 +170,12 @@ def generator(name: str | int) -> Polynomial:
 
 
 def cosine(angle: str) -> Polynomial:
-    """Return the polynomial that is the cosine of the angle with the name ``angle``, a generator of its own."""
+    """Return the polynomial for the cosine of an angle: a single generator, with the name "cos(``angle``)"."""
     return generator(f"cos({angle})")
 
 
 def sine(angle: str) -> Polynomial:
-    """Return the polynomial that is the sine of the angle with the name ``angle``, a generator of its own."""
+    """Return the polynomial for the sine of an angle: a single generator, with the name "sin(``angle``)"."""
     return generator(f"sin({angle})")
 
 

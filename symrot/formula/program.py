@@ -140,7 +140,7 @@ class Program:
 
     @classmethod
     def from_json(cls, data: ProgramRecord) -> "Program":
-        """Return the program whose record ``data`` is, as :meth:`to_json` makes it."""
+        """Return the program that :meth:`to_json` turned into the record ``data``."""
         arguments = tuple(
             Argument(name, role, tuple((component, unit, meaning) for component, unit, meaning in components), scalar)
             for name, role, components, scalar in data["arguments"]
@@ -170,7 +170,7 @@ def node_to_json(node: Node) -> list[Any]:
 
 
 def node_from_json(data: list[Any]) -> Node:
-    """Return the formula whose nested lists ``data`` are, as :func:`node_to_json` makes them."""
+    """Return the formula that :func:`node_to_json` turned into the nested lists ``data``."""
     kind = data[0]
     if kind == "number":
         return ("number", Fraction(data[1]))

@@ -9,23 +9,24 @@ formula                smooth formula                 guard
 =====================  =============================  ==========================================
 ``sign(u)``            ``s``                          ``u``, s = 1 or -1
 ``step(u)``            ``(1 + s)/2``                  ``u``
-``abs(u)``             ``s u``                        ``u``, unless u contains only modes
+``abs(u)``             ``s u``                        ``u``; none if u contains only modes
 ``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
 ``where(c, a, b)``     ``b + p (a - b)``, or only     guards of the condition c, p = 1 or 0
                        a or b (see below)
 ``floor(u)``           ``n``                          ``u - n`` and ``n + 1 - u``, n whole
 ``mod(a, b)``          ``a - b n``                    guards of ``floor(a/b)``
-``atan2(y, x)``        at its cut (see below)         ``x``, and ``y`` where x < 0
+``atan2(y, x)``        as it is for x > 0, else       ``x``, and ``y`` where x < 0
+                       ``s pi - atan2(y, -x)``
 =====================  =============================  ==========================================
 
-The arc tangent of two arguments jumps across the negative x axis. For x < 0 it equals ``s pi - atan2(y, -x)``, with s
-the sign of y; this form is smooth there.
+The arc tangent of two arguments jumps across the negative x axis. The form for x < 0, with s the sign of y, is smooth
+there. A formula ``abs(u)`` in which u contains only modes is constant between switches and remains as it is.
 
 In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times an undefined value is undefined.
-So a ``where`` with such a part, or with a part whose short pulses could shorten steps, stays in the smooth formula
-until the modes are known. :func:`chosen` then replaces it by the part that applies; guards inside the other part are
-ignored.
+A part may also have a short pulse at a time when it does not apply, and the stepper would shorten its steps for
+nothing. So a ``where`` with a part that may be undefined or have a pulse stays in the smooth formula until the modes
+are known. :func:`chosen` then replaces it by the part that applies; guards inside the other part are ignored.
 
 Standard library only.
 """
@@ -278,10 +279,11 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the symbol of the mode of a guard. Its switch is added by the first call with this guard.
+        """Return the symbol of the mode that belongs to a guard, such as s for ``u`` in the table of the module.
 
-        ``kind``, ``where`` and ``at_zero`` are those of :class:`Switch`; a mode that holds under fewer conditions
-        serves too.
+        The first call with this guard adds a switch; later calls return its mode. ``kind``, ``where`` and ``at_zero``
+        are those of :class:`Switch`. A switch that exists already is also used if it applies under fewer conditions
+        than ``where``.
         """
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
@@ -295,7 +297,7 @@ class _Writer:
     def part(self, node: Node, share: Node, value: int) -> Node:
         """Return ``node``, which is the part a or b of ``where(c, a, b)``, as a smooth formula.
 
-        ``share`` is the formula of modes that is 1 where c holds, otherwise 0; ``value`` is 1 for a, and 0 for b. The
+        ``share`` is the formula of :meth:`share` for c, 1 or 0; ``value`` is 1 for the part a, and 0 for b. The
         switches in the part affect the motion only where ``share`` equals ``value``.
         """
         outside = self.conditions
@@ -329,7 +331,11 @@ class _Writer:
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return the formula of modes that is 1 if a condition such as ``t < 1 and omega_1 < 0`` holds, otherwise 0."""
+        """Return a formula that is 1 if a condition such as ``t < 1 and omega_1 < 0`` holds, otherwise 0.
+
+        Its symbols are modes, the numbers 1 and -1 that change at the switches: ``(1 + s1)/2 * (1 + s2)/2`` in this
+        example. ``where(c, a, b)`` is b + share*(a - b).
+        """
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)

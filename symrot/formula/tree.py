@@ -98,7 +98,9 @@ class _Reader:
     def expression(self, binding: int = 0) -> Node:
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels", self.tokens[self.index][2])
+            raise self.fail(
+                f"at most {DEEPEST_NESTING} nested levels of brackets and arguments", self.tokens[self.index][2]
+            )
         left = self.operand()
         while _BINDING.get(self.peek(), 0) > binding:
             _, mark, position = self.next()
@@ -147,7 +149,8 @@ class _Reader:
             return reduce(lambda left, right: ("call", token, (left, right)), arguments)
         if len(arguments) != self.functions[token]:
             count = self.functions[token]
-            raise self.fail(f"{count} argument(s) for '{token}' instead of {len(arguments)}", position, token)
+            number = f"{count} argument{'s' * (count != 1)}"
+            raise self.fail(f"'{token}' to have {number}, and not {len(arguments)},", position, token)
         return ("call", token, tuple(arguments))
 
     def number(self, token: str, position: int) -> Fraction:
@@ -155,7 +158,7 @@ class _Reader:
         if len(token) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
         if exponent and (len(exponent[0]) > 5 or abs(int(exponent[0])) > LARGEST_EXPONENT):
-            raise self.fail(f"a power of ten within {LARGEST_EXPONENT} instead of '{token[:20]}'", position)
+            raise self.fail(f"an exponent of ten of at most {LARGEST_EXPONENT}, and not '{token[:20]}',", position)
         return Fraction(token)
 
     def power(self, position: int) -> int:
@@ -191,9 +194,9 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
     where : str
         File and key of the text, for error messages.
     switching : bool
-        Whether the functions of :data:`SWITCHING` are allowed too, and comparisons, ``and``, ``or`` and ``not`` in the
-        condition of ``where``. In the tree these are calls of ``less``, ``and``, ``or`` and ``not``. See
-        :mod:`symrot.formula.switches`.
+        Whether the functions of :data:`SWITCHING` are allowed too. One of them is ``where(condition, a, b)``, whose
+        condition may have comparisons, ``and``, ``or`` and ``not``; in the tree these are calls of ``less``, ``and``,
+        ``or`` and ``not``. See :mod:`symrot.formula.switches`.
 
     Raises
     ------

@@ -181,7 +181,9 @@ def _degree(node: Node) -> int:
 
 
 def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: object, where: str = "") -> Polynomial:
-    """Return a density as a polynomial in the coordinates of a map.
+    """Return a density as a polynomial in the coordinates in terms of which ``values`` gives x, y, z.
+
+    These are coordinates with limits that describe the shape, such as radius, angle and height of a cylinder.
 
     Parameters
     ----------
@@ -217,7 +219,9 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
     """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``.
 
-    They are weighted by ``density``, a polynomial in the coordinates of the map; the default is the density 1.
+    ``region`` describes the shape by coordinates with limits, such as radius and angle, and by the position as a
+    function of them. The integrals are weighted by ``density``, a polynomial in these coordinates; the default is the
+    density 1.
     """
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)

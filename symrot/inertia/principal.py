@@ -54,7 +54,9 @@ def _read_tensor(inertia: Any, where: str) -> Tensor:
     try:
         rows = matrix(inertia)
     except (TypeError, ValueError):
-        raise InputError(f"{_prefix(where)}expected 3x3 moments of inertia in kg m^2, got {show(inertia)}") from None
+        raise InputError(
+            f"{_prefix(where)}expected an inertia tensor, 3 rows of 3 numbers in kg m^2, got {show(inertia)}"
+        ) from None
     tensor = matrix([[e if isinstance(e, Fraction) else read(e, where) for e in row] for row in rows])
     largest = max(abs(entry) for row in tensor for entry in row)
     for i, j in _PAIRS:

@@ -96,9 +96,10 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula of one coordinate (x, y or z) of a point in a tetrahedron, for its map.
+    """Return the formula for one coordinate (x, y or z) of a point in a tetrahedron with the corners c1, c2, c3 and c4.
 
-    The formula depends on three fractions from 0 to 1; f_1 is 0 at corner 1 and 1 on the opposite face.
+    The point depends on three fractions f_1, f_2, f_3 from 0 to 1. It is c1 + f_1 (P - c1), with P = c2 + f_2 (Q - c2)
+    on the opposite face and Q = c3 + f_3 (c4 - c3) on an edge of this face.
     """
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 

@@ -77,7 +77,7 @@ class Solid:
     name : str
         Name of the shape.
     dimensions : mapping of str to Expr
-        Lengths in m, by the names that the map uses.
+        Lengths in m, by the letters of the shape's dimensions, such as ``R`` and ``h`` of a cone.
     measure : Expr
         Volume (m^3), area (m^2), length (m), or number of points.
     density : Expr
@@ -220,9 +220,10 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia about it per unit mass, of a shape with the dimensions ``values``.
+    """Return the mass, the centre of mass, and the inertia tensor about this centre divided by the mass, of a shape.
 
-    ``density`` is a polynomial in the map's coordinates; without it the density is 1, and the mass is the volume.
+    ``region`` describes the shape by coordinates with limits, and ``values`` are its dimensions. ``density`` is a
+    polynomial in these coordinates; without it the density is 1, and the mass is the volume.
     """
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:

@@ -36,7 +36,9 @@ def matrix(source: Any) -> Tensor:
 
 
 def vector(source: Any) -> Vector:
-    """Return three components, given as a list, a row or a column, as a tuple; another number raises ``ValueError``."""
+    """Return three components, given as a list, a row or a column, as a tuple; raise ``ValueError`` if they are not
+    three.
+    """
     components = _items(source)
     if len(components) == 1:
         components = _items(components[0])

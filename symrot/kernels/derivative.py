@@ -105,8 +105,13 @@ class Derivatives:
     named : sequence of (Symbol, Expr)
         The quantities with their formulas, which may contain the symbols of earlier quantities.
     short : bool
-        Whether the derivative of each quantity gets a name too, such as ``turning_by_theta``. The attribute ``named``
-        holds these derivatives.
+        Whether the derivative of a quantity is a named quantity too, such as ``turning_by_theta``. This keeps formulas
+        short.
+
+    Attributes
+    ----------
+    named : dict of Symbol to Expr
+        The named derivatives with their formulas, filled by the calls of :meth:`of`; empty if not ``short``.
     """
 
     def __init__(self, named: Sequence[tuple[Symbol, Expr]], short: bool = True) -> None:
@@ -118,8 +123,9 @@ class Derivatives:
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
         """Return the derivative of ``expr`` by the input ``variable``; it may contain the symbols of named quantities.
 
-        ``value`` is the symbol for ``expr`` itself, or None. With y = a/b known, the shorter form ``(a' - y b')/b`` is
-        used.
+        Named quantities are those that the constructor was called with, and their named derivatives. ``value`` is the
+        symbol y of the quantity whose formula is ``expr``, or None. With it the derivatives of a quotient and of a root
+        are shorter: ``(a' - y b')/b`` for y = a/b, and ``a'/(2 y)`` for y = sqrt(a).
         """
         root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
         if value is not None and root_of is not None:
@@ -164,10 +170,11 @@ def _is_product(expr: Expr) -> bool:
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return ``partial``, the derivative of ``expr`` by a root, with ``sin(x)`` written as ``x*sinc(x)``.
+    """Return ``partial``, the derivative of ``expr`` by a named root, with ``sin(x)`` written as ``x*sinc(x)``.
 
-    The root is a named quantity such as ``angle``, given by its ``symbol``, and x a multiple of it inside a cosine of
-    ``expr``. The derivative of the root divides by the root, which may be zero; the factor x cancels this division.
+    ``symbol`` stands for the root, such as angle = sqrt(v . v), and x is a multiple of the angle in ``expr``. For
+    cos(angle) the derivative by a component of v is -sin(angle)*v_i/angle: the last quotient is the derivative of the
+    root, and it has no value at angle = 0. With -angle*sinc(angle) for -sin(angle), SymPy cancels the angle.
     """
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
     for angle in angles:

@@ -93,7 +93,11 @@ def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
 
 
 def _symbols(kernel: Definition) -> dict[str, Symbol]:
-    """Return the symbol of each input by its name, as the kernel's formulas contain it (positive, for example)."""
+    """Return a map from the name of each input to the SymPy symbol for it in the kernel's formulas.
+
+    SymPy counts two symbols with one name but different assumptions, such as positive or only real, as different, so
+    the one in the formulas must be used. An input that no formula contains gets a real symbol.
+    """
     formulas = [formula for _, formula in (*kernel.formulas, *kernel.named)]
     held = {str(symbol): symbol for formula in formulas for symbol in formula.free_symbols}
     return {name: held.get(name, Symbol(name, real=True)) for a in kernel.inputs for name, *_ in a.components}
@@ -146,9 +150,10 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of ``formula`` by an input, in which symbols stand for the square roots ``roots``.
+    """Return the derivative of ``formula`` by the input ``variable``.
 
-    ``roots`` maps each symbol to its root, whose derivative is included (chain rule).
+    ``formula`` contains symbols in place of square roots that depend on the input; ``roots`` maps each symbol to its
+    root. Their derivatives are included by the chain rule.
     """
     through = [
         exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)

@@ -131,7 +131,12 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return formulas that select the result of :func:`_branch` with the larger ``4 q_k^2`` when they are evaluated."""
+    """Return the branch with the larger ``4 q_k^2``, as formulas that choose between two branches at run time.
+
+    A branch, a result of :func:`_branch`, is the pair of ``4 q_k^2`` and the list of the components of ``4 q_k q``, for
+    one index k; ``left`` and ``right`` are branches for two indices. In the result, each of the five formulas compares
+    the two values of ``4 q_k^2`` and selects the entry from the branch with the larger one.
+    """
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 

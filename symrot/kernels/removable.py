@@ -1,22 +1,23 @@
 """Functions with a removable singularity, such as sin(x)/x at zero, computed accurately for all numbers.
 
-``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms,
-such as ``(x - sin x)/x^3``, is computed near zero from its Taylor series, with a truncation error that is proven to be
-below half the last bit, and directly for larger x. The boundary between the two ranges is a property of the function,
-not a threshold to be chosen.
+``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms, such
+as ``(x - sin x)/x^3``, is computed near zero from its Taylor series, with a truncation error that is proven to be below
+half the last bit, and directly for larger x. The boundary between the two ranges is a property of the function, not a
+threshold to be chosen.
 
-Errors measured by ``python -m symrot.bench.ulps`` in double and float, with and without fused operations, in units in
-the last place (ulp):
+The functions and their errors, measured by ``python -m symrot.bench.ulps`` in double and float, with and without fused
+operations, in units in the last place (ulp):
 
-- ``sinc``, ``sine_gap``: within 4 ulp at every finite number (measured 1.4 and 2.1).
-- ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). For larger |x| the function decreases as cos(x)/x^2 and
-  has zeros, the solutions of x = tan x, which are no floating-point numbers, so its relative error has no bound. Its
-  absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured 2.5
-  instead of 4 for all numbers).
-- ``sine_bend``, ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the
-  second for |x| <= pi (measured 3.1 and 3.2). For larger |x| its absolute error is at most 4 * 2^-53/x^2 (measured 1.1
-  instead of 4).
-- ``arc_ratio``: within 4 ulp on the half circle on which quaternions lie (measured 1.6; batches 1.2).
+- ``sinc``, sin(x)/x, and ``sine_gap``, (x - sin x)/x^3: within 4 ulp at every finite number (measured 1.4 and 2.1).
+- ``tangent_gap``, (sin x - x cos x)/x^3: within 4 ulp for |x| <= pi (measured 2.3). For larger |x| the function
+  decreases as cos(x)/x^2 and has zeros, the solutions of x = tan x, which are no floating-point numbers, so its
+  relative error has no bound. Its absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least
+  subnormal number (the largest factor measured, over all x, is 2.5 instead of 4).
+- ``sine_bend`` and ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the
+  second for |x| <= pi (measured 3.1 and 3.2). For larger |x| its absolute error is at most 4 * 2^-53/x^2 (the largest
+  factor measured is 1.1 instead of 4).
+- ``arc_ratio``, atan2(s, c)/s for the sine and cosine of half an angle of rotation: within 4 ulp for c >= 0, which is
+  always so for quaternions whose sign is chosen for the shorter rotation (measured 1.6; batches 1.2).
 
 Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
 """
@@ -56,8 +57,8 @@ class Removable:
     """An even analytic function of x, such as sinc, written as ``numerator / x^power``, which is undefined at zero.
 
     ``split`` is the square of the |x| below which the Taylor series is used; there its terms alternate in sign and
-    decrease. For larger |x|, ``scaled/x/x`` is computed: the same quotient without a high power of x, which could
-    overflow.
+    decrease. For larger |x|, the function is computed as ``scaled/x/x``. The formula ``scaled`` is the numerator
+    divided by x^(power - 2); so the quotient is the same, without a high power of x, which could overflow.
     """
 
     name: str

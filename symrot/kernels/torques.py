@@ -33,9 +33,9 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion whose torques transform vectors from space to the body by the quaternion.
+    """A motion that gives torque laws the components of a space vector in the body by the quaternion itself.
 
-    This takes fewer operations than the rotation matrix.
+    This takes fewer operations than the rotation matrix that :class:`Motion` uses.
     """
 
     def to_body(self, vector_s: Matrix) -> Matrix:

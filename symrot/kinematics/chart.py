@@ -79,10 +79,11 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the singular values in increasing order, of one period if they repeat; empty if there are none.
+        """Return the values of the variable at which the chart is singular, in increasing order; empty if there are
+        none.
 
-        The period is the first of [0, 2 pi) and [2 pi, 4 pi) that contains any. Example: the set of all n pi gives (0,
-        pi).
+        If the values repeat with the period 2 pi, those of one period are returned: of [0, 2 pi), or of [2 pi, 4 pi) if
+        [0, 2 pi) contains none. Example: the set of all n pi gives (0, pi).
         """
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
@@ -234,10 +235,10 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix of the entries, not a rate matrix: SymPy rebuilds matrices with ``func(*args)``.
+        """Return a plain matrix of the entries: SymPy rebuilds matrices with ``func(*args)`` after each operation.
 
-        A product or a substitution therefore has no inverse or determinant of the old entries. :meth:`build` makes rate
-        matrices.
+        A product with a rate matrix, or a substitution in it, is therefore a plain matrix. It does not carry over the
+        stored inverse and determinant, which would be wrong for the new entries. :meth:`build` makes rate matrices.
         """
         return ImmutableDenseMatrix(*args, **kwargs)
 

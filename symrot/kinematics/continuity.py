@@ -45,9 +45,10 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     Notes
     -----
     Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has
-    ``(q1 + pi, -q2, q3 + pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. Whether the same or the other
-    set of the next sample is closer does not depend on the set chosen for the sample before, so the choices can be
-    accumulated along the trajectory.
+    ``(q1 + pi, -q2, q3 + pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen
+    that is closer to the set chosen before. One comparison for each pair of neighbouring samples suffices: if the other
+    set of the next sample is closer to the passed set of this one, the choice changes there, whichever set was chosen
+    before.
     """
     (first, _, last), _, _, _ = places(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))
@@ -68,7 +69,8 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 def _step(before: Array, after: Array) -> Array:
     """Return the squared distance between two sets of Euler angles, with each difference taken modulo one revolution.
 
-    Differences are measured in revolutions. The closer of two sets is the one to choose next.
+    Differences are measured in revolutions. Of the two sets that describe the next attitude, the one with the smaller
+    distance from the present set continues the angles without a jump.
     """
     turns = (after - before) / (2 * np.pi)
     step: Array = np.sum((turns - np.rint(turns)) ** 2, axis=-1)

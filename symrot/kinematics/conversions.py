@@ -150,7 +150,10 @@ def _normalize(*q: Array) -> Components:
 
 
 def normalize(q: Any) -> Array:
-    """Return quaternions divided by their norms, shape (..., 4), without overflow or underflow; NaN for a bad row."""
+    """Return quaternions divided by their norms, shape (..., 4), without overflow or underflow.
+
+    A row with the norm 0, or with a component that is not finite, gives NaN.
+    """
     return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
 
 
@@ -383,7 +386,7 @@ def _shadow(*s: Array) -> Components:
 def mrp_shadow(s: Any) -> Array:
     """Return the other set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``, called its shadow.
 
-    For s = 0 (the identity) it is infinite, and the row is NaN.
+    ``s`` and the result have shape (..., 3). A row with s = 0 (the identity) has no finite shadow and gives NaN.
     """
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
@@ -526,8 +529,9 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles of matrices ``dcm_sb``, and a mask of gimbal lock.
+    """Return Euler angles of direction cosine matrices, and a mask of gimbal lock, as :func:`quaternion_to_euler` does.
 
-    Both are as for :func:`quaternion_to_euler`; a matrix that is no rotation (determinant <= 0) gives NaN.
+    A matrix ``dcm`` maps body components to space components. ``lock`` is the distance from gimbal lock below which the
+    mask is True. A matrix that is no rotation (determinant <= 0) gives NaN.
     """
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

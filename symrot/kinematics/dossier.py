@@ -31,6 +31,8 @@ class LockedPoint:
         Angle rates that do not rotate the body (the null vector of B): the first and the third rate cancel each other.
     lost_axis_b : ImmutableMatrix, shape (3, 1)
         The unit direction (body components) about which no angle rates can rotate the body: ``lost^T B = 0``.
+    combination : Expr
+        The sum or difference of the first and the third angle; the attitude depends on these two only through it.
 
     Examples
     --------

@@ -284,12 +284,13 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, the set of gimbal-lock attitudes of ``sequence`` at which it is locked too.
+    """Return, for each other sequence, at which gimbal-lock attitudes of ``sequence`` that other sequence is locked
+    too.
 
-    In gimbal lock the attitude depends on one combination of the first and the last angle. One of the two is therefore
-    set to zero: the last angle of an intrinsic sequence, the first of an extrinsic one. The other angle then describes
-    the attitude, and each set contains values of this angle. The set is empty for a sequence that is regular at all
-    these attitudes; it contains all real numbers for a sequence that locks at all of them.
+    In gimbal lock the attitude depends only on the sum or difference of the first and the last angle. One of these two
+    angles is therefore set to zero: the last angle of an intrinsic sequence, the first of an extrinsic one. The other
+    describes the attitude, and each returned set contains values of this angle, rad. The set is empty for a sequence
+    that is regular at all these attitudes; it contains all real numbers for a sequence that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle
@@ -348,10 +349,11 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the Euler angles, shape (3, 1), rad, of the matrix ``dcm_sb``, in order of application, as in ``atan2``.
+    """Return the Euler angles of the matrix ``dcm_sb`` as expressions, shape (3, 1), rad, in order of application.
 
-    Each angle is an ``atan2`` of two expressions. The image of the last axis under the dcm gives the first and the
-    middle angle; the image of the first axis under the transposed dcm gives the last angle.
+    Each angle is an ``atan2`` of two expressions and has its range, -pi to pi; middle angles have half of it. The image
+    of the last axis under the dcm gives the first and the middle angle; the image of the first axis under the
+    transposed dcm gives the last angle.
     """
     first, middle, last = factors(sequence)
     proper = first.axis == last.axis

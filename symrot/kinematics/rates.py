@@ -70,7 +70,8 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     Notes
     -----
     In the frame between the middle and the last rotation, the middle axis m and the last axis e are fixed, and the
-    first axis is ``-sin(q2) w + cos(q2) e`` (proper) or ``sign (cos(q2) w + sin(q2) e)`` (Tait-Bryan), with w = m x e.
+    first axis is ``-sin(q2) w + cos(q2) e`` (proper) or ``s (cos(q2) w + sin(q2) e)`` (Tait-Bryan), with w = m x e and
+    s = 1 if the three axes are in cyclic order, such as XYZ, otherwise -1.
     At gimbal lock the first axis has no component along w; the rates are not finite and the mask is True.
     """
     (first, middle, last), order, cross, sign = places(sequence)

@@ -35,9 +35,10 @@ class Projection:
     about: str
 
     def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-        """Return the parameters, shape (3, 1), of a unit quaternion q; they are infinite if ``centre + q0 = 0``.
+        """Return the parameters, shape (3, 1), of a unit quaternion: its vector part divided by ``centre + q0``.
 
-        This is a rotation by pi for classical and by 2 pi for modified parameters.
+        ``centre`` is 0 for classical and 1 for modified parameters. They are infinite where the divisor is zero: at
+        rotations by pi (classical) or 2 pi (modified).
         """
         q0, *vector = expressions(q, 4, "a quaternion")
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])
@@ -148,7 +149,11 @@ MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axi
 
 
 def projection(name: str) -> Projection:
-    """Return the projection called ``name``, ``"rodrigues"`` or ``"mrp"``, as functions of its parameters."""
+    """Return the set of parameters called ``name``, ``"rodrigues"`` or ``"mrp"``, which project unit quaternions onto
+    space.
+
+    The result has methods for the conversion from and to quaternions.
+    """
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:
             return which

@@ -182,14 +182,16 @@ def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
     """Return the rate matrix B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis n.
 
     In body components ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; in space components the last
-    sign is plus. ``determinant`` is the determinant of B with the gradient of ``|n|^2 / 2`` as a first row, and
-    ``condition_number`` is the condition number of B for rates that preserve ``|n| = 1``. B is singular at ``alpha = 2
-    pi k``, where no axis is defined.
+    sign is plus. B is singular at ``alpha = 2 pi k``, where no axis is defined.
+
+    The result also has attributes. Its ``determinant`` is that of the 4x4 matrix with B below the row (n1, n2, n3, 0),
+    the gradient of ``|n|^2 / 2``. Its ``condition_number`` is that of B for rates that preserve ``|n| = 1``.
 
     Notes
     -----
-    B is the derivative of the exponential map at ``alpha n``. Normal to the axis, where K^2 = -1, it rotates and scales
-    rates by the complex factor ``f(i) = (1 - exp(-i alpha)) / i = 2 sin(alpha/2) exp(-i alpha/2)``.
+    B is the derivative of the exponential map at ``alpha n``. Let K be the matrix of the cross product with n. For
+    vectors normal to n, K^2 = -1, as for the imaginary unit. B rotates and scales such vectors by the complex factor
+    ``f(i) = (1 - exp(-i alpha)) / i = 2 sin(alpha/2) exp(-i alpha/2)``.
     """
     n, alpha = symbols.axis, symbols.alpha
     sign = {"body": -1, "space": 1}[check_frame(frame)]

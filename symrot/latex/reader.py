@@ -37,7 +37,7 @@ class _Reader:
     def row(self, closing: str, *stops: str) -> Row:
         """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items.
 
-        ``closing`` is the text that the error message expects if the formula ends before such a token.
+        If the formula ends before such a token, the error message says that ``closing`` was expected.
         """
         items: list[Node] = []
         first = token = self.tokens[self.place]
@@ -116,7 +116,8 @@ class _Reader:
         raise self.fail("a number, a symbol or a bracket", token)
 
     def unpaired(self, token: Token) -> Node:
-        raise self.fail(f"a delimiter, or an environment in braces, after {token.text}", token)
+        after = "a bracket" if token.text in ("\\left", "\\right") else "the name of an environment in braces"
+        raise self.fail(f"{after} after {token.text}", token)
 
     def fraction(self, token: Token) -> Fraction:
         return Fraction(token.text, self.argument(), self.argument(), token.start)

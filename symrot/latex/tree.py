@@ -48,7 +48,10 @@ class Font(Command):
 
 
 class Script(Command):
-    """An index, power or primes, with the mark ``text`` (``_``, ``^`` or ``'``); primes contain their own token."""
+    """An index, power or primes of a symbol; ``text`` is the mark ``_``, ``^`` or ``'``, ``inside`` the index or power.
+
+    For primes, as in ``f'``, ``inside`` is the token of the primes.
+    """
 
 
 @dataclass(frozen=True)

@@ -52,8 +52,8 @@ class Number:
     name : str
         Name of the number, LaTeX.
     step : str
-        The first words of the step's claim. The formula is the right side that the page displays if it is an
-        expression, otherwise the derived right side.
+        The first words of the step's claim. The formula is the right side of the step's equation: the expression
+        displayed on the page, or the right side that the step proves if the page displays a text.
     unit : str
     entry : int or None
         Index of the entry if the right side is a matrix, counted row by row from 0.
@@ -97,6 +97,7 @@ class Lesson:
     before : tuple of str
         Names of the pages that a student should read before.
     mistake : Mistake
+        A mistake that students often make about the subject of the page; the page shows how the checker refutes it.
     scene : str
         Name of a shipped scene that shows the effect; empty if there is none.
     numbers : tuple of Number

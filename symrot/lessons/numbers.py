@@ -45,7 +45,7 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
     Raises
     ------
     InputError
-        If the page has no such step, or the scene gives no value for a symbol of the formula.
+        If no step of the page begins with ``number.step``, or the scene gives no value for a symbol of the formula.
 
     Examples
     --------
@@ -57,13 +57,16 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
     side = step.right if step.display is None or isinstance(step.display, str) else step.display.doit()
     if isinstance(side, MatrixBase):
         if number.entry is None:
-            raise InputError(f"{page.name}, {number.words!r}: expected the number of an entry of a matrix, got none")
+            raise InputError(
+                f"{page.name}, {number.words!r}: the formula is a matrix; expected the index of one entry as `entry`"
+            )
         side = side[number.entry]
     expression = number.scale * side.subs(number.where, simultaneous=True) ** number.power
     value = expression.subs(_floats(scene), simultaneous=True).evalf(PRECISION)
     if value.free_symbols or not value.is_real:
-        names = ", ".join(sorted(symbol.name for symbol in value.free_symbols)) or f"the formula, got {value}"
-        raise InputError(f"{page.name}, {number.words!r}: expected a real number of the scene {scene} for {names}")
+        names = ", ".join(sorted(symbol.name for symbol in value.free_symbols))
+        reason = f"the scene {scene} has no value for {names}" if names else f"its value is {value}"
+        raise InputError(f"{page.name}, {number.words!r}: expected a formula with a real value, but {reason}")
     return expression, value
 
 
@@ -80,7 +83,9 @@ def _step(page: Page, number: Number) -> Step:
             section = item.title
         elif isinstance(item, Step) and item.claim.startswith(number.step) and number.section in ("", section):
             return item
-    raise InputError(f"{page.name}, {number.words!r}: expected a step whose claim begins with {number.step!r}")
+    raise InputError(
+        f"{page.name}, {number.words!r}: expected the first words of a step of this page as `step`, got {number.step!r}"
+    )
 
 
 def _of_scene(page: Page, lesson: Lesson) -> Iterator[Passage]:

@@ -61,7 +61,10 @@ def _steps_of(page: Page, sections: Sequence[str]) -> int:
         elif isinstance(item, Table):
             counts[title] = counts.get(title, 0) + len(item.steps)
     if not set(sections) <= set(counts):
-        raise InputError(f"{page.name}: expected sections of the page, got {[*sections]}")
+        missing = [section for section in sections if section not in counts]
+        raise InputError(
+            f"{page.name}: expected titles of sections with steps on this page, {[*counts]}, got {missing}"
+        )
     return sum(counts[section] for section in sections)
 
 

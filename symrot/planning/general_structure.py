@@ -138,8 +138,9 @@ def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
     """Return the exact values, by name, of those constants of body and torques that the structure leaves free.
 
     An example is ``{"A": Fraction(1), "C": Fraction(1, 2)}`` for a symmetric body with the moments A, A, C and no
-    torque. A constant that the structure treats as zero or one is not listed. A mode (the constant that replaces a
-    function such as ``sign``) has the value 1.
+    torque. A constant that the structure treats as zero or one is not listed. Where a torque contains a function such
+    as ``sign(omega_3)``, the equations have a constant in its place, called a mode, which changes when the argument
+    passes through zero. It is listed with the value 1; propagation sets it to the value that belongs to the state.
     """
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}

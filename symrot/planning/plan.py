@@ -46,7 +46,8 @@ class Plan:
     structure : Structure
         Which constants are zero, equal or free; this determines the equations.
     rows : tuple of RuleOutcome
-        The decision of each rule, with its reason.
+        The results of the rules that simplify the equations (:mod:`symrot.planning.rules`), in the order of
+        application. Each says whether its rule applies to the scene, and why.
 
     Examples
     --------
@@ -61,7 +62,8 @@ class Plan:
 
     def __repr__(self) -> str:
         skipped = sum(row.skipped for row in self.rows)
-        return f"<Plan of {self.scene.name}: {len(self.states)} states, {skipped} of {len(self.rows)} rules apply>"
+        rules = f"{skipped} of {len(self.rows)} rules simplify the equations"
+        return f"<Plan of {self.scene.name}: {len(self.states)} states, {rules}>"
 
     def _repr_html_(self) -> str:
         return symrot.in_notebook(self)
@@ -70,7 +72,8 @@ class Plan:
     def constants(self) -> dict[str, Fraction]:
         """The exact values, by name, of all constants in the equations, including those of the initial state.
 
-        A mode, the constant that replaces a function such as sign or abs, has the value 1.
+        A mode, which stands for a function such as sign or abs and changes during the motion, is listed with the value
+        1; propagation sets it to the value that belongs to the state.
         """
         return self.scene_constants | self.start_constants
 
@@ -145,9 +148,10 @@ class Plan:
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan of the same scene and structure for another initial state; the rules are not applied again.
+        """Return the plan of the same scene and structure for another initial state.
 
-        ``initial`` must have the same :func:`structure_key` as the initial state of this plan; this is not checked.
+        The rules that simplify the equations are not examined again, which saves time. They must have the same results:
+        ``initial`` must have the same :func:`structure_key` as the initial state of this plan. This is not checked.
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)

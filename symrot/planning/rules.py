@@ -143,9 +143,9 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
     """Return a list with one sentence that names the axes about which a torque's formulas are zero, or an empty list.
 
-    An example is ``["the formulas give no torque about body axes 1 and 2"]``; it becomes part of the reason of a rule.
-    The list is empty if no formula is zero. ``scene_torque`` is the torque as the scene gives it, ``torque`` its
-    structure.
+    An example is ``["the formulas give no torque about body axes 1 and 2"]``; a plan shows it among the reasons for its
+    equations. ``scene_torque`` is the torque with its formulas and numbers as the scene gives it. ``torque`` is the
+    same torque with parameters in place of numbers; only its frame is used.
     """
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
@@ -195,8 +195,9 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
     """Return whether a torque is always parallel to body axis ``axis`` while the body rotates only about this axis.
 
-    If it is for all torques, the motion is a rotation about this axis, with one angle as attitude. ``torque`` is the
-    structure of the torque, ``scene_torque`` the same torque with its numbers. The answer is False for formulas.
+    If this holds for all torques of a scene, its motion is a rotation about this axis, with one angle as attitude.
+    ``torque`` is the structure of the torque, ``scene_torque`` the same torque with its numbers. For a torque that a
+    scene gives by its own formulas (FormulaTorque) the result is False, since the direction is not examined.
     """
     if isinstance(torque, FormulaTorque):
         return False

@@ -110,7 +110,7 @@ class SceneKernel:
     def rate_parameters(self) -> Parameters:
         """The parameters of the rates, as pairs (name, formula in terms of the constants of the scene).
 
-        An example is the pair of ``"p0"`` and the formula ``(B - C)/A``, in the order of the C array ``p``.
+        The first pair may be ``"p0"`` with the formula ``(B - C)/A``. The pairs are in the order of the C array ``p``.
         """
         return _loaded(self.record["rate_parameters"])
 

@@ -131,10 +131,7 @@ class Drawing(Protocol):
     """Protocol of a drawing that can be written as SVG, the format of the figures on pages."""
 
     def svg(self, title: str, description: str) -> str:
-        """Return the drawing as the text of an SVG file;
-
-        ``title`` and ``description`` are its words for screen readers.
-        """
+        """Return the drawing as the text of an SVG file; screen readers speak its ``title`` and its ``description``."""
 
 
 @dataclass(frozen=True)
@@ -221,9 +218,10 @@ class Page:
 
     @property
     def extent(self) -> str:
-        """The number of steps in words for a table of contents:
+        """The number of steps in words for a table of contents, such as "12 steps".
 
-        "12 steps", or "12 steps, 3 of them for the library only".
+        If some of them prove formulas that only symrot's numeric code needs, so that a course can leave them out, these
+        are counted too: "12 steps, 3 of them for the library only".
         """
         count = len(self.steps)
         words = f"{count} {'step' if count == 1 else 'steps'}"

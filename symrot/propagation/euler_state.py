@@ -114,9 +114,9 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    ``sequence`` is the Euler sequence at the start. ``switching`` says whether the states change to the angles of its
-    partner near gimbal lock. All times are scene times, not times since the start, so that they stay the same when the
-    Euler sequence changes.
+    ``sequence`` is the Euler sequence at the start. If ``switching`` is true, the states change near gimbal lock to the
+    angles of another sequence, the partner of the first, which is regular there. All times are scene times, not times
+    since the start, so that they stay the same when the Euler sequence changes.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:

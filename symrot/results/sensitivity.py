@@ -1,7 +1,7 @@
 """Derivatives of a motion by initial values and constants, at the sample times, with labels."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from symrot.results.labels import Labelled
 from symrot.results.tables import BY
 
-__all__ = ["Sensitivities", "Sensitivity", "restored"]
+__all__ = ["OUTPUTS", "Sensitivities", "Sensitivity", "quotient_unit", "restored"]
 
 OUTPUTS = {  # quantity -> components, unit, frame, meaning
     "omega": (("omega_1", "omega_2", "omega_3"), "rad/s", "body", "angular velocity, body components"),
@@ -50,7 +50,8 @@ class Sensitivity(NamedTuple):
 class Sensitivities(Mapping[str, Sensitivity]):
     """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
 
-    A name of one component, such as ``omega_2``, is also accepted.
+    A name of one component, such as ``omega_2``, is also accepted. For an ensemble the arrays have one more axis, the
+    first, over the motions.
 
     Attributes
     ----------
@@ -95,7 +96,14 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return len(self.groups)
 
     def __repr__(self) -> str:
-        return f"<Sensitivities by {', '.join(self.variables)}: {len(self.omega)} samples>"
+        *motions, samples = self.omega.shape[:-2]
+        of = f"{motions[0]} trajectories, " if motions else ""
+        return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
+
+    def of(self, motion: int) -> "Sensitivities":
+        """Return the derivatives of one motion of an ensemble, which is number ``motion`` from 0."""
+        omega, quaternion, rotation = (array[motion] for array in (self.omega, self.quaternion, self.rotation))
+        return replace(self, omega=omega, quaternion=quaternion, rotation=rotation)
 
     @property
     def record(self) -> dict[str, Any]:
@@ -117,11 +125,13 @@ class Sensitivities(Mapping[str, Sensitivity]):
                 names = tuple(f"{component}{BY}{variable}" for component in components)
                 values = getattr(self, quantity)[..., number]
                 text = f"derivative of the {meaning}, by {variable}"
-                items.append(Labelled(f"{quantity}{BY}{variable}", values, names, _per(own, unit), frame, text))
+                items.append(
+                    Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
+                )
         return items
 
 
-def _per(unit: str, other: str) -> str:
+def quotient_unit(unit: str, other: str) -> str:
     """Return the unit of a derivative: ``unit``, of the quantity, divided by ``other``, of the variable.
 
     If ``other`` is empty (unknown), the result ends in words: "(rad/s) per unit of the parameter".

@@ -135,8 +135,9 @@ def present_value(
     for step in place.path:
         inside = isinstance(value, dict) and step in value
         if not inside and not (isinstance(value, list) and isinstance(step, int) and step < len(value)):
-            if place.path[0] == "torque" and len(place.path) == 3 and place.path[2] in ("center_of_mass", "direction"):
-                return list(_vector(scene, place.path))
+            follows = _constant_of_torque(scene, place.path)
+            if follows is not None:
+                return list(follows) if isinstance(follows, tuple) else follows
             raise InputError(
                 f"{key}: expected a value that the scene gives, but the scene does not give {_text(place)}"
             )
@@ -321,8 +322,24 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
         return place
     if path == ("initial", "omega"):
         return scene.omega_b
-    index, field = path[1], path[2]
-    return scene.torques[int(index)].vector(str(field))
+    vector = _constant_of_torque(scene, path)
+    assert isinstance(vector, tuple)
+    return vector
+
+
+def _constant_of_torque(scene: _Scene, path: Path) -> Fraction | tuple[Fraction, ...] | None:
+    """Return a constant of a torque that the content does not give, because it follows from the body: an exact value.
+
+    An example is the path ``("torque", 0, "weight")`` of a torque that gives gravity's acceleration and no weight. The
+    result is None if the torque has no such constant. A torque of kind table is no torque of ``scene.torques``.
+    """
+    kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
+    if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):
+        return None
+    if kinds[path[1]] == TABLE_KIND.kind:
+        return None
+    own = scene.torques[path[1] - kinds[: path[1]].count(TABLE_KIND.kind)]
+    return own.values.get(str(path[2]))
 
 
 def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
@@ -365,7 +382,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
 
 
 def _tensor(scene: _Scene) -> list[list[Any]]:
-    """Return the rows of the scene's inertia tensor: as the content gives it, or else as computed from the shapes."""
+    """Return the rows of the scene's inertia tensor as its file gives them, or as computed if its file gives shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:
             return [[a, 0, 0], [0, b, 0], [0, 0, c]]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError, PropagationError
+from symrot.results.tables import BY
 from symrot.scene.scene import Scene
 from symrot.sweeps.design import Design, Draws
 from symrot.sweeps.outputs import SweepOutput, evaluate, sample_times
@@ -42,6 +43,7 @@ class Job:
     outputs: tuple[SweepOutput, ...]
     method: str
     tolerance: float
+    sensitivities: tuple[str, ...] = ()  # variables of the derivatives among the outputs
 
 
 @dataclass(frozen=True)
@@ -198,8 +200,9 @@ def _propagate(
     """
     try:
         ensemble = propagate_ensemble(
-            job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance
-        )
+            job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance,
+            sensitivities=job.sensitivities or None,
+        )  # fmt: skip
         values = evaluate(job.outputs, ensemble, job.times, samples)
     except (InputError, PropagationError, ArithmeticError) as error:
         if len(rows) == 1:
@@ -217,6 +220,6 @@ def _propagate(
 
 def prepared(job: Job) -> Job:
     """Return the job, with a scene that computes just the quantities that the outputs need, such as the attitude."""
-    quantities = tuple(dict.fromkeys(output.quantity for output in job.outputs))
-    output = job.scene.output._replace(quantities=quantities)
+    quantities = tuple(dict.fromkeys(output.quantity for output in job.outputs if BY not in output.quantity))
+    output = job.scene.output._replace(quantities=quantities or ("omega",))
     return replace(job, scene=replace(job.scene, output=output))

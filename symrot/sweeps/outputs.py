@@ -1,7 +1,8 @@
 """Outputs of a sweep: quantities of each trajectory at all sample times or at one time, or their extremes and means.
 
 An output is written as text: ``energy`` is the energy at all sample times, ``omega_1@end`` one component at the last
-time, ``axis_z@2.5`` at t = 2.5 s, ``omega_3@max`` the largest value among the samples.
+time, ``axis_z@2.5`` at t = 2.5 s, ``omega_3@max`` the largest value among the samples. ``omega_2_by_weight@end`` is a
+derivative by an initial value or a constant of the scene.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,11 +15,23 @@ from numpy.typing import NDArray
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
+from symrot.propagation.sensitivities.variables import ATTITUDE, Variable, read_variables
 from symrot.results.labels import COMPONENTS, FRAMES
+from symrot.results.sensitivity import OUTPUTS, quotient_unit
+from symrot.results.tables import BY
 from symrot.scene.scene import Scene
 from symrot.scene.tables import QUANTITIES, Output
 
-__all__ = ["AT_TIMES", "REDUCTIONS", "SweepOutput", "evaluate", "read_outputs", "sample_times", "scene_for"]
+__all__ = [
+    "AT_TIMES",
+    "REDUCTIONS",
+    "SweepOutput",
+    "evaluate",
+    "read_outputs",
+    "sample_times",
+    "scene_for",
+    "variable_keys",
+]
 
 Floats = NDArray[np.float64]
 
@@ -86,9 +99,10 @@ def read_outputs(texts: Sequence[str], scene: Scene, times: Floats) -> tuple[Swe
     ----------
     texts : sequence of str
         Names of quantities or of components, each alone or with ``@start``, ``@end``, ``@min``, ``@max``, ``@mean`` or
-        ``@TIME`` in s. A quantity of several components stands for all of them.
+        ``@TIME`` in s. A quantity of several components stands for all of them. A derivative is written
+        ``omega_by_weight`` or ``q0_by_omega_3``, with the names of :class:`symrot.Sensitivities`.
     scene : Scene
-        The scene; it determines the Euler sequence.
+        The scene; it determines the Euler sequence and the variables of derivatives.
     times : array, shape (m,)
         Sample times, s.
 
@@ -113,6 +127,8 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
     name, at, word = (part.strip() for part in text.partition("@"))
     reduction, time, suffix = _reduction(word, times) if at else ("", 0.0, "")
     components = _components(scene.output)
+    if BY in name:
+        return _derivatives(name, scene, reduction, time, suffix)
     if name in components:
         chosen = [name]
     elif name in QUANTITIES:
@@ -130,15 +146,70 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
         if quantity == "euler":
             unit = "deg" if scene.output.degrees else "rad"
             meaning = f"Euler angle {k + 1} of {scene.output.sequence}, in order of application"
-        if reduction:
-            meaning += f", {REDUCTIONS[reduction][0]}" if reduction in REDUCTIONS else f", at t = {time!r} s"
+        meaning += _reduced(reduction, time)
         frame = FRAMES.get(quantity, "")
         outputs.append(SweepOutput(key + suffix, quantity, k, reduction, time, unit, frame, meaning))
     return outputs
 
 
+def _reduced(reduction: str, time: float) -> str:
+    """Return the end of an output's meaning that names its reduction: ``", at t = 2.5 s"``; empty for all times."""
+    if not reduction:
+        return ""
+    return f", {REDUCTIONS[reduction][0]}" if reduction in REDUCTIONS else f", at t = {time!r} s"
+
+
+def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: str) -> list[SweepOutput]:
+    """Return the outputs for a derivative such as ``omega_2_by_weight`` or, for three components, ``omega_by_weight``.
+
+    ``reduction``, ``time`` and ``suffix`` are those that :func:`_reduction` returns for the word after @.
+    """
+    part, _, variable = name.partition(BY)
+    parts = {component: (quantity, k) for quantity, (names, *_) in OUTPUTS.items() for k, component in enumerate(names)}
+    chosen = [part] if part in parts else [key for key, (quantity, _) in parts.items() if quantity == part]
+    if not chosen:
+        known = [*OUTPUTS, *parts]
+        hint = nearest(part, known)
+        raise InputError(f"output: expected one of {', '.join(known)} before {BY}, got {show(name)}"
+                         + (f" ({hint})" if hint else ""))  # fmt: skip
+    outputs = []
+    for item in variables_of(variable, scene):
+        for key in chosen:
+            quantity, k = parts[key]
+            _, unit, frame, meaning = OUTPUTS[quantity]
+            text = f"derivative of the {meaning}, by {item.name}{_reduced(reduction, time)}"
+            own = f"{quantity}{BY}{item.name}"
+            label = f"{key}{BY}{item.name}{suffix}"
+            outputs.append(SweepOutput(label, own, k, reduction, time, quotient_unit(unit, item.unit), frame, text))
+    return outputs
+
+
+def variables_of(name: str, scene: Scene) -> list[Variable]:
+    """Return the variables that a name after ``_by_`` means: one, or the three of a vector.
+
+    A name is that of a variable, such as ``weight``, ``omega_3``, ``attitude_2``, or of a vector, such as ``attitude``.
+    """
+    stem, _, number = name.rpartition("_")
+    key = stem if stem == ATTITUDE and number in ("1", "2", "3") else name
+    try:
+        variables = read_variables(scene, [key])
+    except InputError as reason:
+        raise InputError(f"output: {str(reason).removeprefix('sensitivities: ')}") from None
+    return [variable for variable in variables if key == name or variable.name == name]
+
+
+def variable_keys(outputs: Sequence[SweepOutput]) -> list[str]:
+    """Return the names of the variables of all derivatives among the outputs, as ``sensitivities`` expects them."""
+    names = dict.fromkeys(output.quantity.partition(BY)[2] for output in outputs if BY in output.quantity)
+    return list(dict.fromkeys(ATTITUDE if name.rpartition("_")[0] == ATTITUDE else name for name in names))
+
+
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return reduction, time (s), and ending of the output's name for a word after @: ``end``, ``max``, ``2.5``."""
+    """Return (reduction, time in s, ending) for the word after @ in an output's name, such as ``omega_1@max``.
+
+    ``max`` gives ("max", 0.0, "@max"). A time gives the reduction "at": 2.5 gives ("at", 2.5, "@2.5"), and ``start``
+    and ``end`` give the first and the last of ``times``.
+    """
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:
@@ -164,7 +235,10 @@ def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
 
 
 def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, samples: Floats) -> dict[str, Floats]:
-    """Return the outputs of the motions of an ensemble by name, each of shape (n, m) or (n,).
+    """Return the outputs of the n motions of an ensemble by name.
+
+    The shape is (n, m) for an output at all sample times, and (n,) for an output at one time or a reduction such as
+    max.
 
     Parameters
     ----------
@@ -173,16 +247,17 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
     ensemble : Ensemble
         n motions with samples at the times ``samples``.
     times : array, shape (m,)
-        The sample times of the sweep, s.
+        The sample times that the sweep asks for, s.
     samples : array
-        The times of the samples, s, ascending, from :func:`sample_times`.
+        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: those in ``times``, and
+        single times of outputs such as ``omega_1@2.5``.
     """
     places = np.searchsorted(samples, times) if np.isin(times, samples).all() else np.empty(0, dtype=np.intp)
     values: dict[str, Floats] = {}
     quantities: dict[str, Floats] = {}
     for output in outputs:
         if output.quantity not in quantities:
-            whole = ensemble.quantity(output.quantity)
+            whole = _samples(ensemble, output.quantity)
             quantities[output.quantity] = whole.reshape(*whole.shape[:2], -1)
         column = quantities[output.quantity][..., output.component]
         if output.reduction == "at":
@@ -191,3 +266,10 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
             series = column[:, places]
             values[output.name] = REDUCTIONS[output.reduction][1](series) if output.reduction else series
     return values
+
+
+def _samples(ensemble: Any, quantity: str) -> Floats:
+    """Return the samples of a quantity or of a derivative such as ``omega_by_weight``, shape (n, m, ...)."""
+    part, by, variable = quantity.partition(BY)
+    samples: Floats = getattr(ensemble.sensitivities[variable], part) if by else ensemble.quantity(quantity)
+    return samples

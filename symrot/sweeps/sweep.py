@@ -11,20 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.ensemble.variation import read_times
 from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
-from symrot.planning.plan import make_plan
+from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
+from symrot.propagation.sensitivities.variation import rates_of, structure_of
+from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
-from symrot.sweeps.design import read_design
+from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
 from symrot.sweeps.memory_store import MemoryStore
-from symrot.sweeps.outputs import read_outputs, scene_for
+from symrot.sweeps.outputs import read_outputs, scene_for, variable_keys
 from symrot.sweeps.parquet_store import ParquetStore
 from symrot.sweeps.processes import cores, run_here
 from symrot.sweeps.statistics import read_statistics, statistics_of
-from symrot.sweeps.targets import Content
+from symrot.sweeps.targets import OMEGA, Content, constants_of
 from symrot.sweeps.zarr_store import ZarrStore
 
 __all__ = ["STORES", "Sweep", "sweep"]
@@ -230,10 +232,10 @@ def sweep(
     if target is None:
         _require_memory(header)
     store: Store = MemoryStore(header) if target is None else STORES[target.suffix.lower()](target, header)
-    alone = repr(chosen) if keep == "statistics" else ""
-    if store.alone:
-        _require_same(store.alone, alone, target)
-        store.finish([], alone)  # removes values that a process that was stopped left
+    only_statistics = repr(chosen) if keep == "statistics" else ""
+    if store.only_statistics:
+        _require_same(store.only_statistics, only_statistics, target)
+        store.finish([], only_statistics)  # removes values that a process that was stopped left
     else:
         pending = store.pending()
         done = header.count - sum(stop - start for start, stop in pending)
@@ -246,7 +248,7 @@ def sweep(
                 progress(done, header.count)
         outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
-        store.finish(tables, alone)
+        store.finish(tables, only_statistics)
     return _result(store, target)
 
 
@@ -264,8 +266,8 @@ def _require(condition: bool, where: str, expectation: str, value: object) -> No
 def _require_same(present: str, statistics: str, path: Path | None) -> None:
     if present != statistics:
         raise InputError(
-            f"{path}: expected the same statistics and keep as before, because the values of the trajectories were "
-            "removed there; choose another name for other results"
+            f"{path}: expected the same values of `statistics` and `keep` as when this file was written: it has "
+            "statistics only, and the values of the trajectories were removed; write other results to another file"
         )
 
 
@@ -319,7 +321,35 @@ def _job(
         choose_method(make_plan(own), method)  # raises an error that lists the methods
     aim = float(own.tolerance) if tolerance is None else read_tolerance(tolerance)
     outputs = read_outputs(texts, own, np.sort(times))
-    return prepared(Job(design, own, content, np.sort(times), outputs, method, aim))
+    keys = variable_keys(outputs)
+    if keys:
+        _require_derivatives(own, content, design, keys)
+    return prepared(Job(design, own, content, np.sort(times), outputs, method, aim, tuple(keys)))
+
+
+def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
+    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
+
+    This is so for torques that jump or bend, and for a variable that changes something which varies in the sweep.
+    """
+    from symrot.ensemble.sensitivities import read_columns
+
+    varying = ["quaternion"] if design.attitudes == "uniform" else []
+    for axis in design.axes:
+        path = axis.target.path
+        if path and content is not None:
+            varying += constants_of(path, scene, content)
+            varying += ["omega", "quaternion"] if path[0] == "initial" else []
+        else:
+            varying.append("omega" if axis.target.name in OMEGA else axis.target.name)
+    try:
+        _, columns = read_columns(scene, keys, varying)
+        rates, _ = rates_of(Plan(scene, structure_of(scene, columns, varying), ()))
+        reason = refusal(rates)
+    except InputError as error:
+        reason = str(error).removeprefix("sensitivities: ")
+    if reason:
+        raise InputError(f"output: {reason}")
 
 
 def _content(scene: Scene) -> Content | None:

@@ -15,8 +15,8 @@ FAULTS = (
     "transposed", "half_angle", "other",
 )  # fmt: skip
 CHAPTERS = {
-    "axis_angle", "books", "energy", "euler_equations", "free_bodies", "identities", "inertia", "quaternions", "rates", "rotation", "tops",
-    "vectors", "work",
+    "axis_angle", "books", "energy", "euler_equations", "free_bodies", "further", "identities", "inertia", "quaternions", "rates", "rotation",
+    "tops", "vectors", "work",
 }  # fmt: skip
 FIELDS = {"id", "text", "form", "kind", "source", "expected", "check", "chapter"}
 OPTIONAL = {"recognised_as", "note", "given", "where", "frame", "sequence", "body", "units"}

@@ -91,8 +91,8 @@ REFUSED = (
     (r"\sin\theta\phi = 1", 11), (r"\foo = 1", 1), (r"\sum_i m_i = 1", 1), (r"a = b = c", 7), (r"a \le b", 3),
     (r"a = b \text{ for all } x", 7), (r"\left.x\right|_0 = 1", 6), (r"\frac{d}{dt} R v = 0", 16), (r"\frac{d x}{d t^2} = 1", 1),
     (r"\begin{pmatrix}1&2\\3\end{pmatrix} = 1", 1), (r"\begin{cases}1\end{cases} = 1", 1), (r"(a = b)", 4), (r"a) = b", 2),
-    (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1), (r"{\rm tr}(R) = 1", 2),
     (r"\left(a] = 1", 13), (r"\left(a\right] = 1", 8), (r"\bar{x}(y) = 1", 8), (r"\mathrm\mathrm{tr} = 1", 8), (r"\mathrm{\theta t} = 1", 16), (r"\dot{ab}_1 = 1", 9),
+    (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1),
     (r"\int_0^1 x = 1", 12), (r"|x = 1", 4), (r"x2 = 1", 2), ("a = b\n\n§", 8), ("(" * 500 + "a = b", 31), (r"\sin -x = 1", 6),
 )  # fmt: skip
 
@@ -105,7 +105,7 @@ def test_what_is_not_understood_is_refused_with_its_place(latex, position):
 
 @pytest.mark.parametrize(("latex", "words"), [
     (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "two vectors"),
-    (r"\theta'(3) = 0", "a function that is declared"), (r"m'(t) = 0", "a function that is declared"), (r"\dot{m} = 0", "function of time"), (r"\vec v = 0", "'v'"),
+    (r"\theta'(3) = 0", "a declared function"), (r"m'(t) = 0", "a declared function"), (r"\dot{m} = 0", "to be declared as a function of t"), (r"\vec v = 0", "v to be declared as a vector"),
 ])  # fmt: skip
 def test_vectors_are_refused_where_they_make_no_sense(latex, words):
     with pytest.raises(InputError, match=words):
@@ -150,7 +150,7 @@ def test_vector_formulas_of_papers(latex, text):
 @pytest.mark.parametrize(("latex", "words"), [
     (r"\begin{aligned} a &= b \\ c &= d\end{aligned}", "one equation instead of the environment aligned"), (r"\begin{align*}a&=b\end{align*}", "the environment align"),
     (r"a &= b", "at position 3"), (r"a = b \\ c = d", "at position 7"), (r"\Delta\theta = \omega", "for a change"),
-    (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a function that is declared"), (r"\theta(0) = 1", "a function that is declared"),
+    (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a declared function"), (r"\theta(0) = 1", "a declared function"),
     (r"x^{(2)} = 1", "a power like x^2"), (r"a \pm b = c", "at position 3"), (r"\left(\frac{dL}{dt}\right)_{space} = N", "operator or '='"),
 ])  # fmt: skip
 def test_what_reads_in_two_ways_in_papers_is_refused(latex, words):
@@ -215,3 +215,11 @@ def test_letters_around_a_cross_are_vectors_where_the_text_shows_it(claim, verdi
 def test_powers_of_brackets_and_of_numbers_side_by_side_are_read():
     for claim in (r"\left(a^b\right)^c = a^{bc}", r"(2^n)^2 10^{a} 10^{b} = 2^{2n} 10^{a+b}"):
         assert symrot.check(claim).verdict in ("true", "conditional")
+
+
+@pytest.mark.parametrize(("latex", "verdict"), [
+    (r"\sin(2\theta) = 2 sin\theta cos\theta", "true"), (r"\theta = \arccos\frac{tr(R) - 1}{2}", "recognised"),
+    (r"{\rm tr}(AB) = \mathop{\mathrm{tr}}(BA)", "true"), (r"F = 2tr(t)\frac{1}{2}", "definition"),
+])  # fmt: skip
+def test_functions_spelled_with_letters_are_functions(latex, verdict):
+    assert symrot.check(latex, repair=False).verdict == verdict

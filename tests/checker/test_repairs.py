@@ -148,3 +148,14 @@ def test_repairs_with_quaternions_and_matrices_are_written_as_people_write_them(
     texts = [each.text for each in symrot.check(claim).repairs]
     assert texts[0] == repair
     assert not any(word in text for text in texts for word in ("qmul", "dot", "eye", ".T"))
+
+
+@pytest.mark.parametrize(("claim", "repair"), [
+    ("q̇ = ¼ q ⊗ (0, ω)", "q' = q ⊗ (0, ω)/2"),
+    (r"\dot q = q\otimes\begin{bmatrix}0\\ \boldsymbol\omega\end{bmatrix}",
+     r"\dot{q} = \frac{q \otimes \begin{bmatrix} 0 \\ \boldsymbol{\omega} \end{bmatrix}}{2}"),
+    ("H_O = r_G x m v_G - H_G", "H_O = cross(r_G, m*v_G) + H_G"),
+])  # fmt: skip
+def test_a_repair_can_be_checked_as_it_is_written(claim, repair):
+    assert [each.text for each in symrot.check(claim).repairs] == [repair]
+    assert symrot.check(repair).verdict == "recognised"

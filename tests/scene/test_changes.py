@@ -229,3 +229,16 @@ def test_attitude_and_quaternion_together_are_refused():
     for use in (symrot.propagate, symrot.propagator, lambda scene, **start: symrot.propagator(scene)([0.0], **start)):
         with pytest.raises(symrot.InputError, match="attitude or quaternion, got both"):
             use("t_handle", quaternion=[1, 0, 0, 0], attitude=[1, 0, 0, 0])
+
+
+def test_constants_that_follow_from_the_body_have_names(tmp_path):
+    """The weight of a body whose mass and gravity are given; a table of samples before it changes no numbers."""
+    scene = symrot.load_scene("heavy_top_loops")
+    assert scene.value("weight") == Fraction(981, 200)
+    rows = "".join(f"{t},0,0,0\n" for t in range(6))
+    (tmp_path / "samples.csv").write_text(f"t,M1,M2,M3\n{rows}")
+    content = scene.to_dict() | {
+        "torque": [{"kind": "table", "file": str(tmp_path / "samples.csv")}, {"kind": "gravity", "weight": 3}]
+    }
+    both = symrot.load_scene(content, table_folders=[tmp_path])
+    assert both.with_({"center_of_mass_3": "0.07"}).torques[0].vector("center_of_mass")[2] == Fraction(7, 100)

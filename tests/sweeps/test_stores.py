@@ -148,7 +148,7 @@ def test_statistics_alone_leave_no_values(tmp_path):
 @pytest.mark.parametrize("options", [{"statistics": "mean", "keep": "statistics"}, {"statistics": "envelope"}, {}])
 def test_values_that_were_removed_are_not_taken_for_results(tmp_path, options):
     sweep(path=tmp_path / "a.zarr", statistics="envelope", keep="statistics")
-    with pytest.raises(InputError, match="the values of the trajectories were removed there"):
+    with pytest.raises(InputError, match="the values of the trajectories were removed"):
         sweep(path=tmp_path / "a.zarr", **options)
 
 

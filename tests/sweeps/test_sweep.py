@@ -5,6 +5,7 @@ import pytest
 
 import symrot
 from symrot.errors import InputError
+from tests.needs import needs_compiler
 from tests.sweeps.scenes import DAMPED_TOP, OUTPUTS, sweep
 
 xarray = pytest.importorskip("xarray")
@@ -144,3 +145,37 @@ def test_an_argument_that_cannot_be_used_is_one_sentence(options, message):
     assert "\n" not in str(error.value)
     for part in message.split(".*"):
         assert part in str(error.value)
+
+
+@needs_compiler
+def test_outputs_that_are_derivatives_are_those_of_an_ensemble():
+    """For any chunks; the mass varies with the constants that follow from it, and the variable is one of them."""
+    names = ["omega_1_by_omega_3@end", "rotation_by_weight"]
+    options = {"count": 4, "seed": 3, "t": [0, 0.1], "workers": 1, "outputs": names}
+    vary = {"omega_1": "normal(0, 0.1)", "body.mass": "linspace(0.4, 0.6, 2)"}
+    result = symrot.sweep("heavy_top_loops", vary, **options)
+    masses = result.array("input_body.mass")
+    scene = symrot.load_scene("heavy_top_loops").with_({"body.mass": masses[1]})
+    omega = [[result.array("input_omega_1")[1], *map(float, scene.initial.omega_b[1:])]]
+    alone = symrot.propagate_ensemble(scene, omega=omega, t=[0, 0.1], sensitivities=["omega_3", "weight"])
+    assert abs(result.array("omega_1_by_omega_3@end")[1] - alone.sensitivities["omega_3"].omega[0, 1, 0]) < 1e-14
+    own = [result.array(f"rotation_{i}_by_weight")[1] for i in (1, 2, 3)]
+    assert np.abs(np.transpose(own) - alone.sensitivities["weight"].rotation[0]).max() < 1e-14
+    other = symrot.sweep("heavy_top_loops", vary, chunk=1, **options)
+    assert np.array_equal(other.array("rotation_2_by_weight"), result.array("rotation_2_by_weight"))
+    assert result.to_xarray().rotation_2_by_weight.units == "(rad)/(N)"
+
+
+@pytest.mark.parametrize(
+    ("scene", "output", "message"),
+    [
+        ("heavy_top_loops", "omega_1_by_wieght", "did you mean 'weight'"),
+        ("heavy_top_loops", "omeg_1_by_weight", "did you mean 'omega_1'"),
+        ("heavy_top_loops", "omega_1_by_body.mass@end", "body.mass changes I_xx"),
+        ("friction_wheel", "omega_1_by_omega_2", "jump or bend"),
+    ],
+)
+def test_a_derivative_that_does_not_exist_is_refused_before_the_sweep(scene, output, message):
+    vary = {"omega_1": "normal(0, 1)"} | ({"body.mass": [0.4, 0.6]} if scene == "heavy_top_loops" else {})
+    with pytest.raises(InputError, match=message):
+        symrot.sweep(scene, vary, count=2, outputs=output)

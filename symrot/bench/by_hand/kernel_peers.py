@@ -79,9 +79,10 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the name of the kernel whose derivatives the kernel ``name`` also computes, and these derivatives.
+    """Return the kernel that the kernel ``name`` extends by derivatives, and those derivatives as pairs (output,
+    input).
 
-    Each derivative is a pair (output, input) of names; there are none for a kernel without derivatives.
+    A kernel without derivatives gives its own name and an empty list.
     """
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
     return name.split(BY)[0], [(output, variable) for output, variable in entries]

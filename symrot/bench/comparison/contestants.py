@@ -64,9 +64,11 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the function that is timed for the closed form: from an end time, s, to the state there and the steps.
+    """Return the function that is timed for the closed form: from an end time, s, to (state at this time, number of
+    steps).
 
-    Each call also computes the constants of the closed form from the initial state. ``tolerance`` has no effect.
+    A closed form takes no steps, so the number is 0. Each call also computes the constants of the closed form from the
+    initial state. ``tolerance`` has no effect.
     """
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None

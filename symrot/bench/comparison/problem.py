@@ -50,7 +50,9 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The compiled functions of the scene: the rates dy/dt of the integrated states, and the printed quantities."""
+        """The compiled functions of the scene: the rates dy/dt of the integrated states, and the outputs such as omega
+        and q.
+        """
         return scene_kernel(self.plan)
 
     @cached_property

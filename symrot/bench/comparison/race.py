@@ -65,7 +65,10 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the total time, s, of all rounds, from the first run of each entry."""
+    """Return an estimate of the time, s, of all timed rounds of all ``measured`` methods; their first runs are over.
+
+    The time of the first run of a method is the estimate for each of its runs.
+    """
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 

@@ -138,8 +138,8 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     if others and not result.doubt <= CONTRADICTION:
         apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
         raise SymrotError(
-            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but they differ from "
-            f"{name} ({apart}): one of them is wrong, or the motion is too unstable for a reference over this span"
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but these differ from "
+            f"{name}: {apart}; one of the references is wrong, or the motion is too unstable over this span"
         )
     return result
 
@@ -234,7 +234,8 @@ def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]
 def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
     """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations.
 
-    ``_Unavailable`` is raised as for :func:`_long_double`.
+    ``_Unavailable`` is raised if the rates cannot be computed in long double, or if no accurate result is reached
+    within about ``seconds`` of processor time.
     """
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
@@ -267,16 +268,16 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             before = path
         steps = int(steps * 1.5)
     if finest is None:
-        raise _Unavailable("the motion needs more fixed steps than allowed")
+        raise _Unavailable(f"{MOST_STEPS} fixed steps, or the time allowed, are not enough; choose a shorter span")
     return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 
 def _grid(problem: Problem) -> list[float]:
     """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are no pulses.
 
-    They are the ends of the steps that enclosures of the torque allow. Without them a fixed step could miss a pulse
-    narrower than the step, and a step of half its length could miss it too; then both would agree on a wrong result.
-    Steps between two of these times are halved like all others, so that steps are short wherever that is necessary.
+    They are the ends of the steps of symrot's dop853, which are so short that bounds of the torque exclude a missed
+    pulse. Without them a fixed step could miss a pulse narrower than the step, and a step of half its length could miss
+    it too; then both would agree on a wrong result.
     """
     motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
@@ -298,9 +299,9 @@ def _fixed_steps(
 ) -> Callable[[int], Any]:
     """Return a function that takes a number of steps and returns the integrated states at the times of comparison.
 
-    The motion is computed by the method ``name`` in the C ``files``. The steps are shared among the intervals of the
-    times ``grid``, at which a step must end, in proportion to their lengths, but each interval gets at least
-    ``steps/fewest`` steps.
+    The states, of the problem ``general``, are computed by the method ``name`` in the C ``files``. A step ends at each
+    time in ``grid``. Intervals between these times get steps in proportion to their lengths, but each gets at least one
+    if the total is ``fewest``, the smallest number of steps, and accordingly more if the total is larger.
     """
     parts = [
         general.kernel.source,

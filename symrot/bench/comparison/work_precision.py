@@ -180,10 +180,11 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return, for each power of ten of the error (decade), the fastest run, and all methods' times relative to it.
+    """Return one row of the printed table for each power of ten of the error (decade).
 
-    Each row is a row of the printed table. Decades below ``floor``, the difference between the references, are left
-    out.
+    A row is a dict with the error, the fastest method, its time in s, and for each method its time, the ratio to the
+    fastest, and its tolerance. ``floor`` is the difference between the reference solutions, which cannot judge smaller
+    errors: decades below it are left out.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []

@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """How a body changes if its points are moved in steps: growth, growth by the proven law, strain, error."""
+    """The change of a body whose points are moved in steps of ``h`` by one scheme, ``tangent`` or ``secant``."""
 
     scheme: str
     h: float  # s
@@ -34,7 +34,11 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws by which one tangent or secant step changes lengths, as pairs (law, whether it was proven)."""
+    """Return the laws by which one step changes the distance of a point from the fixed point, as (formula, whether
+    proven).
+
+    A tangent step moves the point from r to r' = r + h omega x r, a secant step to r' = r + h omega x (r + r')/2.
+    """
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -97,10 +101,10 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion, and return, for each scheme and step size, how the box changes.
+    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size and scheme.
 
-    ``stop`` is the end time, s; ``steps`` are the step sizes, s; ``size`` are the edges of the box. The schemes are
-    steps along the tangent and along the secant.
+    ``stop`` is the end time, s; ``steps`` are the step sizes h, s; ``size`` are the edges of the box. The schemes move
+    a point along the tangent of its path, r' = r + h omega x r, or along the secant, r' = r + h omega x (r + r')/2.
     """
     points, results = _corners(size), []
     motion = propagator(scene)

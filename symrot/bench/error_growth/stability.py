@@ -62,7 +62,8 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     scene : Scene, optional
         The motion to follow; default: a free plate for many revolutions.
     long : bool
-        Whether to follow the free plate for 1e6 revolutions instead of 1e5, and SciPy's run for 1e4 of these.
+        Whether to follow the free plate for 1e6 revolutions instead of 1e5. SciPy, which is slower, is followed for
+        the first 1e4 of these instead of the first 1e3.
     say : callable
         Called with messages about the progress.
     """

@@ -125,7 +125,7 @@ def _order(d: Derivation) -> None:
     )
     half_n, half_k = dcm_of_axis_angle(N, pi), dcm_of_axis_angle(K, pi)
     d.step(
-        r"Rotations by $\pi$ about two perpendicular axes can be exchanged too.",
+        r"Two rotations by $\pi$ about perpendicular axes also give the same attitude in either order.",
         half_n * half_k - half_k * half_n,
         0,
         because="the products of the two quaternions differ only in sign, and $q$ and $-q$ describe the same attitude",

@@ -103,7 +103,7 @@ def _all(d: Derivation) -> None:
         q = quaternion_of_euler(sequence)
         d.define(f"{sequence}:", "q", q)
         d.step(
-            "The quaternion gives the rotation of the three angles.",
+            "The quaternion describes the same rotation as the three angles.",
             quaternion_to_dcm(q),
             dcm(sequence),
             because="the quaternion of a product is the product of the quaternions",

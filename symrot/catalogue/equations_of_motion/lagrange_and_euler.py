@@ -58,9 +58,10 @@ def _transposition(d: Derivation) -> None:
             display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
         )
     d.passage(
-        r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes "
-        r"with time; this adds the term $B^{\mathsf T} I \dot\omega$. The other term, $B^{\mathsf T} (\omega \times "
-        r"I\,\omega)$, is the gyroscopic term."
+        r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$, the angular momentum $I\,\omega$ takes the place "
+        r"of the constant vector $\mu$. It changes with time, which adds the term $B^{\mathsf T} I \dot\omega$ to "
+        r"Lagrange's expression. The term above becomes the gyroscopic term $B^{\mathsf T} (\omega \times "
+        r"I\,\omega)$."
     )
 
 

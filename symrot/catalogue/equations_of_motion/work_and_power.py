@@ -36,8 +36,8 @@ def _forces(d: Derivation) -> None:
     d.notation({"v_d": V + OMEGA.cross(OTHER)})
     second = Matrix(symbols.torque_b)
     d.step(
-        "The power of a force at $r$ from a reference point with the velocity $v$ is the power of the force at the "
-        "reference point plus the power of its moment.",
+        "The power of a force on a body is the power that it has at a reference point plus the power of its moment. "
+        "The reference point of the body has the velocity $v$, and $r$ leads from there to the force.",
         FORCE.dot(V + OMEGA.cross(POINT)),
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
         because="the factors of a triple product may be permuted cyclically",

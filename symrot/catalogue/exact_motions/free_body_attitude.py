@@ -281,7 +281,8 @@ def _theta(d: Derivation) -> None:
     s, c, dn = imag
     d.step(
         r"At $w$, let $\mathrm{sn}_w = -i\,\ell_3 / \ell_1$, $\mathrm{cn}_w = H / \ell_1$ and $\mathrm{dn}_w = \ell_2 "
-        r"/ \ell_1$. There is a point with these values, since they satisfy the two quadratic relations.",
+        r"/ \ell_1$. The three functions have these values at a point, since the values satisfy $\mathrm{cn}_w^2 + "
+        r"\mathrm{sn}_w^2 = 1$ and $\mathrm{dn}_w^2 + \mu\,\mathrm{sn}_w^2 = 1$.",
         Matrix([c**2 - s**2, dn**2 - MU * s**2]),
         Matrix([1, 1]),
         because=r"$H^2 = \ell_1^2 + \ell_3^2$ and $\ell_2^2 = \ell_1^2 + \mu\,\ell_3^2$",
@@ -299,8 +300,8 @@ def _theta(d: Derivation) -> None:
         "a function of sn and dn."
     )
     d.step(
-        "In the derivative of the argument of $N(u + w)$, the function of sn and dn is a constant minus the variable "
-        r"term in the rate of $\psi$.",
+        "This function of sn and dn, the variable part of the derivative of the argument of $N(u + w)$, is a constant "
+        r"minus the term with $\Delta$ of $\dot\psi$, up to a constant factor.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "

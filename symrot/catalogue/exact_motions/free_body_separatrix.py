@@ -143,7 +143,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         display=r"R\,[\omega]_\times",
     )
     d.step(
-        "Long before and long after the motion, the angular momentum is along the intermediate axis, in opposite "
+        r"For $t \to \pm\infty$ the angular momentum in the body is along the intermediate axis, in opposite "
         "directions.",
         Matrix([momentum.subs(h, 1), momentum.subs(h, -1)]),
         SIGN * H * Matrix([0, 1, 0, 0, -1, 0]),

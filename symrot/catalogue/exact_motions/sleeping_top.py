@@ -74,9 +74,9 @@ def _through(d: Derivation) -> None:
         named=r"\left. \left( \frac{d}{dt} \sin\tfrac\theta2 \right)^2 \right|_{u = 1}",
     )
     d.passage(
-        r"When the axis passes through the vertical, $\phi - \psi$ changes at a constant rate, by the [partial "
-        r"fractions](heavy_top_motion.md) with $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ is given a sign, the attitude "
-        "is a smooth function of time."
+        r"In this motion $\phi - \psi$ changes at a constant rate, as the [partial "
+        r"fractions](heavy_top_motion.md) show for $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ changes its sign "
+        "whenever the axis passes through the vertical, as cn does, the attitude is a smooth function of time."
     )
 
 

@@ -24,7 +24,7 @@ def derive() -> Derivation:
     unit = [unit_relation()]
     dcm_sb, point = Matrix(quaternion_to_dcm()), Matrix(symbols.position)
     d.step(
-        "The tensor of a rotated point is the rotated tensor.",
+        "If a point of the body is rotated, its contribution to the inertia tensor is rotated too.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),
         Matrix(rotate(inertia_of_point(symbols.m, point), dcm_sb)),
         because="$R$ preserves lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",

@@ -10,7 +10,7 @@ SN, CN, DN = symbols.elliptic
 W_VALUES = symbols.elliptic_w
 MU = symbols.mu
 I = Symbol("i")  # noqa: E741
-"""The imaginary unit, as a symbol: a step that uses it is given :func:`imaginary`."""
+"""The imaginary unit, as a symbol: a step that uses it has the hypothesis i^2 + 1 = 0 (:func:`imaginary`)."""
 
 
 def imaginary() -> Expr:

@@ -18,7 +18,8 @@ TENSOR = Matrix(
         [symbols.I_xz, symbols.I_yz, symbols.I_zz],
     ]
 )
-"""The general inertia tensor about the point of motion, body axes."""
+"""The general inertia tensor in body axes, about the point for which the equations hold: the fixed point of the body,
+or its centre of mass."""
 
 
 def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:

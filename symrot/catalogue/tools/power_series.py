@@ -13,9 +13,10 @@ def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
 
 
 def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
-    """Return the coefficient of ``variable^index`` in a sum of power series multiplied by polynomials.
+    """Return the coefficient of ``variable^index`` in a sum of power series, or their derivatives, times polynomials.
 
-    Derivatives of power series are allowed too.
+    It is an expression in the unknown coefficients of the series, ``a[index]``, ``a[index + 1]`` and so on for a series
+    called ``a``.
 
     Parameters
     ----------
@@ -25,7 +26,7 @@ def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index
 
     Notes
     -----
-    The k-th term of a series has the derivative of order d ``k (k - 1) .. (k - d + 1) variable^(k - d)``.
+    The derivative of order d of the term ``a[k] variable^k`` is ``k (k - 1) .. (k - d + 1) a[k] variable^(k - d)``.
     """
     total = Integer(0)
     for name, factors in terms.items():

@@ -245,10 +245,11 @@ class _EqualityProver:
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the atom of a function that the C text computes by a series near zero and by its formula elsewhere.
+        """Return the value, such as sinc(x), of a conditional that takes a series near x = 0 and a formula elsewhere.
 
-        The text is ``square < split ? near : far``; the arguments are the indices of these operations: x^2, the bound
-        of x^2, the series and the formula.
+        The C text computes it as ``x*x < c ? series : formula``. ``square``, ``split``, ``near`` and ``far`` are the
+        indices of the operations for x*x, c, the series and the formula. CertificateError is raised if no function in
+        the kernel's formulas has this series and formula.
         """
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:

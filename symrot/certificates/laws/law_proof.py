@@ -62,7 +62,10 @@ class CaseProof:
         ("circle", x) ("root", x) ("sign", x)     sin(x)^2 + cos(x)^2 = 1; sqrt(x)^2 = x; copysign(1, x)^2 = 1
         ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y; of -x; of x + pi/2
         ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x); of x wrapped to [-pi, pi]
-        ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor has these cofactors
+        ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor is the sum of the cofactors times the
+                                                  relations; y is never negative
+
+    ``relations`` are polynomials that are zero, and ``entries`` prove the law's expressions to be zero.
     """
 
     case: tuple[Choice, ...]
@@ -212,7 +215,8 @@ class LawProver(FormulaReader):
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
                 raise CertificateError(
-                    f"{self.name}: expected a square root whose divisor is a sum of squares, got the divisor {below}"
+                    f"{self.name}: expected a sum of squares as the denominator of the fraction under a square root, "
+                    f"got {below}"
                 )
             value = self.roots[square] = self.fractions.lowest(self.radical(above * below), below)
             if square != (above * below, below) or value[0] in self.radicals:
@@ -375,9 +379,11 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the c for which ``c*unit`` is a base angle, one with generators for cosine and sine: 1/2 for x/2.
+        """Return the number c of the base angle ``c*unit``, the angle that has generators for its cosine and sine.
 
-        Raise BaseAngleTooLarge if ``coefficient*unit`` is no integer multiple of this base angle.
+        ``unit`` is a monomial such as x. All angles in x that the law contains are integer multiples of the base angle:
+        1/2 comes back if it contains x/2 and x. BaseAngleTooLarge is raised if ``coefficient*unit`` is no integer
+        multiple.
         """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
@@ -396,9 +402,10 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of the base angle ``angle``, each a generator;
+        """Return the pair (cosine, sine) of a base angle, each a generator: a variable of the polynomials.
 
-        ``unit`` is its monomial, such as x.
+        ``angle`` is the base angle, such as x/2, and ``unit`` its monomial without the number, such as x. The first
+        call for a unit adds the relation sin^2 + cos^2 - 1.
         """
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
@@ -410,20 +417,23 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of a polynomial after division by the relations.
+        """Return the remainder of the polynomial ``value`` after division by the relations.
 
-        A hypothesis of the law is a divisor too, if the law has only one. A remainder of zero proves that the
-        polynomial is zero.
+        A relation is a polynomial that is zero, such as s^2 + c^2 - 1. If the law has exactly one hypothesis, its
+        polynomial is a divisor too; several hypotheses are left to :meth:`cofactors`. A remainder of zero proves that
+        ``value`` is zero.
         """
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return cofactors, whose products with relations and hypotheses have a polynomial as sum, or None.
+        """Return polynomials, the cofactors, such that the sum of cofactor times relation or hypothesis is ``value``.
 
-        Without hypotheses, division by the relations decides, since their leading generators differ. If division by
-        relations and several hypotheses leaves a remainder, linear algebra tries constants, and then linear
-        polynomials, as cofactors of the hypotheses.
+        The result has a pair (index, cofactor as text) for each cofactor that is not zero; hypotheses have the first
+        indices. It is None if no cofactors are found: ``value`` is then not proven to be zero. Without hypotheses,
+        division by the relations always finds them if they exist, since the leading generators of the relations differ.
+        If division by relations and several hypotheses leaves a remainder, linear algebra tries constants, and then
+        linear polynomials, as cofactors of the hypotheses.
         """
         if not value:
             return ()

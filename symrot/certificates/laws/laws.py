@@ -52,7 +52,9 @@ class LawProof:
 
 
 def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
-    """Prove a law about quantities that have formulas; symbols without a formula may take any value.
+    """Prove a law about quantities that have formulas, and return the proof.
+
+    A symbol without a formula may take any value.
 
     Parameters
     ----------
@@ -62,6 +64,11 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
         The law to prove.
     formulas : mapping of str to Expr
         A map from the name of a symbol to its formula.
+
+    Returns
+    -------
+    LawProof
+        The proof as text, with a case for each selection of branches of the conditionals in the formulas.
 
     Raises
     ------

@@ -46,11 +46,15 @@ MAX_CASES = 20_000
 class ObjectVerdict:
     """The result of comparing the machine code of one function with its C text.
 
-    ``verdict`` is "identical"; "identical up to contraction" (the code differs only by fused multiply-adds, which stand
-    for a product and a sum of the C text and save one rounding, and in the sign of sums that are zero); "differs"
-    (``output`` is the first output that differs, ``reason`` says how); or "not understood" (``reason`` names the
-    instruction and its address). Only the first two verdicts accept the function. ``cases`` is the number of compared
-    cases, ``instructions`` the largest number of instructions executed in a case.
+    ``verdict`` is one of four texts; only the first two accept the function:
+
+    - "identical": all bits of the outputs agree.
+    - "identical up to contraction": the code computes products and sums of the C text by fused multiply-adds, which
+      round once instead of twice. Apart from that, only the sign of a sum that is zero may differ.
+    - "differs": ``output`` is the first output that differs, and ``reason`` says how.
+    - "not understood": ``reason`` names the instruction and its address.
+
+    ``cases`` is the number of compared cases, ``instructions`` the largest number of instructions executed in a case.
     """
 
     function: str
@@ -139,8 +143,8 @@ def _compare(
 ) -> ObjectVerdict:
     """Compare a C function with its machine code, for one alignment of the stack pointer at the call.
 
-    ``start`` is the section and address of the machine code; ``top`` is the place of the return address on the stack,
-    which states the alignment. The other arguments are those of :func:`compare_function`.
+    ``start`` is the section and address of the machine code. ``top`` is the stack offset of the return address, whose
+    remainder modulo 64 fixes the alignment. The other arguments are those of :func:`compare_function`.
     """
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)

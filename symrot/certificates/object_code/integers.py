@@ -69,7 +69,7 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
         raise NotUnderstood("expected an address that a relocation of a known kind defines, got another address")
     place = state.context.listing.symbols.get(relocation.symbol)
     if place is None:
-        raise NotUnderstood(f"expected a symbol that the code may read, got {relocation.symbol}")
+        raise NotUnderstood(f"expected an address of the object file's symbol table, got {relocation.symbol}")
     section, offset = place
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
@@ -222,7 +222,9 @@ def _computed(state: MachineState, name: str, first: Words, second: Words) -> tu
         return state.halves(terms.address(node[2], offset)), unknown
     if name in ("and", "or", "xor"):
         return state.halves({"and": terms.bit_and, "or": terms.bit_or, "xor": terms.bit_xor}[name](a, b)), unknown
-    raise NotUnderstood("expected integers of known value, got unknown ones")
+    raise NotUnderstood(
+        f"expected operands of {name} that are the same for all inputs, such as loop counters, got other values"
+    )
 
 
 _INTEGER: dict[str, Callable[[int, int], int]] = {
@@ -323,8 +325,8 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 def condition_holds(state: MachineState, condition: str) -> bool:
     """Return whether a conditional jump is taken with the processor's current flags.
 
-    ``condition`` is the end of its name, such as ``ne`` (not equal). UndecidedBranch is raised if comparing two unknown
-    numbers decides.
+    ``condition`` is the jump's name without the ``j``, such as ``ne`` (not equal). UndecidedBranch is raised if the
+    flags come from a comparison of two numbers that depend on the inputs.
     """
     kind, values = state.flags
     if kind == "numbers" and condition in OF_NUMBERS:

@@ -1,6 +1,8 @@
-"""The effect of SSE2 and AVX move instructions; all other vector instructions are looked up in the tables.
+"""The execution of SSE2 and AVX instructions on symbolic values: moves here, the others by functions in two tables.
 
-``bare`` is the name of an instruction without the prefix ``v`` of its VEX form, ``is_vex`` whether it had that prefix.
+The tables are ``SHUFFLES`` in shuffles.py, for instructions that rearrange words, and ``NUMERIC`` in numbers.py, for
+arithmetic. In this module, ``bare`` is the name of an instruction without the prefix ``v`` of its VEX form, and
+``is_vex`` says whether it had that prefix: ``vaddpd`` is ``addpd``, True.
 """
 
 from collections.abc import Callable
@@ -35,7 +37,11 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
 
 
 def run_vector_instruction(state: MachineState, instruction: Instruction) -> None:
-    """Execute an instruction on vector registers; raise NotUnderstood if it is in no table."""
+    """Execute an instruction on vector registers.
+
+    NotUnderstood is raised if it is in none of the tables ``MOVES``, ``SHUFFLES`` and ``NUMERIC``, or has operands of
+    other kinds.
+    """
     is_vex = instruction.mnemonic.startswith("v")
     bare = instruction.mnemonic[1:] if is_vex else instruction.mnemonic
     move = MOVES.get(bare)
@@ -70,8 +76,8 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
     """Return how many bytes an instruction reads from a source operand.
 
-    For a register that is ``whole``, its size; for memory it depends on the instruction, ``bare`` (without a prefix
-    ``v``).
+    That is the size of the register, ``whole``, unless ``operand`` is in memory: from there ``movsd``, for example,
+    reads 8 bytes. ``bare`` is the name of the instruction without the prefix ``v``.
     """
     if not isinstance(operand, Memory):
         return whole

@@ -149,9 +149,10 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: for each number, the sign bit of the third source selects.
+    """Return the function that executes a blend, a selection between two sources for each number of a vector.
 
-    It selects the second source if it is set, otherwise the first. ``suffix`` says packed or scalar, and the type.
+    The second source is selected where the sign bit of the third source is set, otherwise the first. ``suffix`` says
+    packed or scalar, and the type: ``pd`` for packed doubles.
     """
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:

@@ -177,7 +177,7 @@ def _broadcast(count: int) -> Shuffle:
 def _broadcast_byte(state: MachineState, sources: list[Words], _: int) -> Words:
     byte = state.context.terms.lowest_byte(sources[-1][0])
     if byte is None:
-        raise NotUnderstood("expected a byte of known value, got an unknown one")
+        raise NotUnderstood("expected a byte that is the same for all inputs, got a byte that depends on the inputs")
     return [state.context.terms.bits(32, byte * 0x01010101)] * 8
 
 

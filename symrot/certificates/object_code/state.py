@@ -198,9 +198,13 @@ class MachineState:
             elif value is not None:
                 offset += scale * (value - (1 << 64) if value >> 63 else value)
             else:
-                raise NotUnderstood("expected a known address, got an unknown one")
+                raise NotUnderstood(
+                    "expected an address in an argument's array or on the stack, got one that cannot be computed"
+                )
         if not base:
-            raise NotUnderstood("expected a known address, got an unknown one")
+            raise NotUnderstood(
+                "expected an address in an argument's array or on the stack, got one that cannot be computed"
+            )
         return base, offset
 
     def load(self, base: str, offset: int, count: int) -> Words:

@@ -7,7 +7,10 @@ as equal. The laws hold exactly, also under overflow and underflow and for signe
     a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
     a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
     1*a = a               a + (-0) = a       a*copysign(1, b) = a with its sign changed by that of b
-    a < b = b > a = -b < -a                  signs, magnitudes and masks as the bits they are
+    a < b = b > a = -b < -a
+
+Operations on single bits are computed exactly: a sign bit, a number without its sign, and a mask (all bits of a number
+set or none, the result of a comparison).
 
 ``-(a + b) = (-a) + (-b)`` is not among the laws, since it fails in the sign of a sum that is zero; nor is any law that
 moves a rounding.
@@ -105,9 +108,9 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term for the number ``value``, in ``width`` bits;
+        """Return the constant term for the number ``value`` as a floating-point number of ``width`` bits.
 
-        ValueError if these cannot hold it exactly.
+        ValueError is raised if no such floating-point number is exactly ``value``.
         """
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
@@ -412,9 +415,11 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return the terms ``roots`` simplified by ``known``, the outcomes of comparisons that are possible.
+        """Return the terms ``roots``, simplified by the outcomes of comparisons that one case assumes.
 
-        With ``fused=False``, each fused multiply-add is split into a rounded product and a rounded sum.
+        ``known`` maps a compared pair of terms to the outcomes (less, equal, greater, unordered) that are still
+        possible in this case. A comparison with the same result for all of them becomes a constant. With
+        ``fused=False``, each fused multiply-add is split into a rounded product and a rounded sum.
         """
         roots = list(roots)
         new: dict[int, int] = {}
@@ -475,9 +480,10 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a comparison in the terms ``roots`` whose outcome is open and depends on no other;
+        """Return a comparison whose outcome is not known, among ``roots`` and the terms on which they depend.
 
-        None if there is none.
+        No other such comparison is among its operands, so that a case distinction may begin with it. None is returned
+        if all comparisons are decided.
         """
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 

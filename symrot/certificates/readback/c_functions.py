@@ -183,7 +183,7 @@ def _function(cursor: Cursor) -> CFunction | None:
         parameters.append(_parameter(cursor))
     cursor.expect(")")
     if len({parameter.name for parameter in parameters}) != len(parameters):
-        raise cursor.fail(f"different names for the parameters of {name}", "one name twice")
+        raise cursor.fail(f"parameters of {name} with names that differ from each other", "one name twice")
     if cursor.peek() == ";":
         cursor.next()
         return None

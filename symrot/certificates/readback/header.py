@@ -1,8 +1,8 @@
 """The check that the header of an emitted kernel contains only fixed lines and the prototypes of its C file.
 
 A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one of
-the lines below, in this order, or belong to the prototype of a function that the C file defines. Only the standard
-library is used.
+the constants ``_TOP`` to ``_END`` of this module, in this order, or belong to the prototype of a function that the C
+file defines. Only the standard library is used.
 """
 
 import re
@@ -84,8 +84,10 @@ def check_header(header: str, source: str, name: str) -> None:
     middle = lines[len(top) : len(lines) - len(end)]
     if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
         raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end, got others")
-    if any("#" in line for line in middle):
-        raise CertificateError(f"{name}.h: expected nothing but prototypes between the fixed lines, got other text")
+    if directive := next((line for line in middle if "#" in line), ""):
+        raise CertificateError(
+            f'{name}.h: expected nothing but prototypes inside extern "C" {{ }}, got the line {directive[:80]!r}'
+        )
     declared = {_words(each) for each in " ".join(middle).split(";") if each.strip()}
     defined = {_words(head) for head in re.findall(r"^(void \w+\([^()]*\))\s*\{", _COMMENT.sub(" ", source), re.M)}
     if declared != defined:

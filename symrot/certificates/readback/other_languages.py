@@ -1,6 +1,7 @@
-"""Kernels in a language other than C: their text is rewritten as C, which is read and compared.
+"""The check that a kernel's text in another language performs the same operations as its C text.
 
-What differs between JavaScript and JAX is the function that rewrites a text as C; the rest is here.
+The text is rewritten as C, read, and its operations are compared with those of the kernel's C file. JavaScript and JAX
+have different functions that rewrite a text as C; the rest is here.
 """
 
 from collections.abc import Callable

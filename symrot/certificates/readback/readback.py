@@ -208,7 +208,7 @@ class _BodyReader:
         return self.builder.add("const", Fraction(value))
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
-        """Return the node for the next element of the input array ``name``, such as ``q[1]``, and pass its index."""
+        """Read the index after the name of an input array; return the node for this component, such as ``q[1]``."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail("an input array", repr(name))
@@ -443,13 +443,15 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
         mark = "+"
     range_test.expect(";")
     if range_test.peek() or not reader.vectorised_angles <= tested:
-        raise range_test.fail(f"the end of the loop after the test of each angle by {far}")
+        raise range_test.fail(
+            f"{far}(..) of each angle of a sine or cosine in the sum of beyond, and then the end of the loop"
+        )
     reader.vectorised_angles = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
     if plain.written != scope.written:
-        raise cursor.fail("both loops over samples to perform the same operations")
+        raise cursor.fail("a second loop over samples that assigns the same outputs as the first", "other outputs")
 
 
 def _finished(

@@ -77,20 +77,32 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return intervals of computed values, and error bounds of ``factor`` half units in the last place."""
+        """Return (intervals of computed values, error bounds) of an operation that rounds its exact result.
+
+        ``exact`` are intervals of the exact results. The error bound is ``factor`` times half a unit in the last place
+        of the largest exact result; the intervals of computed values are wider than ``exact`` by it.
+        """
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
 
     def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
-        """Return an interval that contains a node's exact result: ``plain``, narrowed by mean value forms if in use."""
+        """Return an interval that contains a node's exact result, at most as wide as the interval ``plain``.
+
+        ``plain`` comes from the intervals of the operands, ``values``. It is narrowed by the node's mean value form if
+        the search uses these forms (``self.centred`` is not None); otherwise it is returned as it is.
+        """
         if self.centred is None:
             return plain
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return intervals of computed values, and error bounds of ``units`` unit roundoffs plus ``least``."""
+        """Return (intervals of computed values, error bounds) of a function with a known relative error.
+
+        ``exact`` are intervals of its exact values. The error bound is ``units`` unit roundoffs (2^-53 or 2^-24) times
+        the largest exact value, plus ``least``.
+        """
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
@@ -257,9 +269,11 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of a gap function, such as (x - sin x)/x^3, on ranges of [0, GAP_END].
+    """Return error bounds of a gap function, such as (x - sin x)/x^3, on ranges of x within [0, GAP_END].
 
-    Entry k of the result holds the bound on every run of 2^k neighbouring cells, of which there are GAP_CELLS.
+    The range [0, GAP_END] is divided into GAP_CELLS cells of equal width. Item k of the result is an array of bounds,
+    each on a run of 2^k neighbouring cells; entry i is on the run that begins with cell i. So two entries cover any
+    range.
     """
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
@@ -304,7 +318,11 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 
 
 def _truncation_error(precision: str) -> float:
-    """Return a bound of the relative truncation error of a series, which the proof of the C text checks."""
+    """Return a bound of the relative error of a Taylor series that the C text computes near zero, as for sinc(x).
+
+    It is a quarter of a unit roundoff of ``precision``, for every such series: the proof that the C text computes its
+    formulas accepts only series that leave out less.
+    """
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -461,7 +479,12 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Append intervals of a node's exact and computed values to both states; return a bound of its rounding error."""
+    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its rounding error.
+
+    The interval in ``state.values`` contains exact and computed values. That in ``computed.values`` contains computed
+    values only, and may be narrower: the branches that a box assumes restrict computed values. If ``computed`` is
+    ``state``, the graph has no branches, and one interval is appended.
+    """
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:

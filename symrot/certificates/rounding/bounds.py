@@ -60,8 +60,8 @@ class OutputBound:
     ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
     ``evaluations`` is the number of boxes evaluated; ``converged`` says that ``bound`` is at most 2 % above
     ``pointwise``. ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded
-    numbers, in which the exact formula takes the branch of the rounded computation. ``contraction_safe`` says that the
-    bound also holds with fused multiply-adds.
+    numbers in the C text: the error is measured from the exact formula with the branches that the C text takes there.
+    ``contraction_safe`` says that the bound also holds with fused multiply-adds.
     """
 
     output: str
@@ -222,8 +222,8 @@ def _output_bound(operations: Operations, place: str, task: BoundTask, result: S
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
         what = task.graph.text(result.obstacle)
         raise InputError(
-            f"{operations.name}: expected a box without singular points, got a box where {place} has no bound: "
-            f"{what} is not known to stay away from its singular values near {where}"
+            f"{operations.name}: expected ranges of the inputs on which the error of {place} is bounded, got ranges "
+            f"with no bound: near {where}, {what} may be singular or overflow; narrow the ranges there"
         )
     mantissa, exponent = frexp(result.largest_value)
     power = min(exponent - (mantissa == 0.5), LARGEST_EXPONENT)
@@ -273,11 +273,15 @@ def rounding_section(
     Returns
     -------
     dict
-        ``{"meaning", "assumptions", "libm_ulp", "budget", "box": {place: [hex, hex]}, "unit_groups", "clearance",
-        "precisions": [{"precision", "operations_sha256", "unit", "outputs": [..]}]}``, each output with ``"output",
-        "absolute", "units", "pointwise", "at", "scale", "evaluations", "converged", "modulo_turns", "choices",
-        "contraction_safe"``. ``absolute`` is the bound, ``units`` the bound in multiples of ``unit`` (2^-53 or 2^-24),
-        rounded up. Numbers are hexadecimal text.
+        Numbers are hexadecimal text. The keys are:
+
+        - "meaning", "assumptions": what a bound states, and what it presupposes; text.
+        - "libm_ulp", "budget": the arguments. "box": ``{place: [low, high]}``.
+        - "unit_groups", "clearance": the fields ``unit`` and ``clearance`` of ``region``.
+        - "precisions": a list with an item for each function: its "precision", the hash of its operations
+          ("operations_sha256"), its "unit" (2^-53 or 2^-24) and its "outputs". Each output has the fields of
+          :class:`OutputBound`, with "absolute" for ``bound`` and "modulo_turns" for ``turns``, and "units": the bound
+          in multiples of "unit", rounded up, as decimal text.
 
     Raises
     ------
@@ -425,8 +429,9 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected the data on {place} that a new search on the certified box computes "
-                    f"(a bound of {recomputed['units']} units), got other data (a bound of {item['units']} units)"
+                    f"{operations.name}: expected the certificate's error bound of {place} to be {recomputed['units']} "
+                    f"units of {unit:g}, as symrot computes it now on the same ranges, got {item['units']} units or "
+                    "other details; certify the kernel again"
                 )
 
 
@@ -453,12 +458,15 @@ def _check_precision(
         task, bound = tasks_by_output[item["output"]], float.fromhex(item["absolute"])
         at = np.array([float.fromhex(item["at"][place]) for place in task.graph.places])
         if not isfinite(bound) or bound < 0 or item["units"] != _units(Fraction(bound) / Fraction(unit)):
-            raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
+            raise CertificateError(
+                f"{name}: expected a finite error bound of {item['output']}, the same in 'absolute' and in 'units' of "
+                f"{unit:g}, got {bound!r} and {item['units']}"
+            )
         choices, safe = _choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected the listed branches for {item['output']} to be those of the operations in the C "
-                "text, got others"
+                f"{name}: expected 'choices' and 'contraction_safe' of {item['output']} as they follow from the C text "
+                f"({choices} and {safe}), got others"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
@@ -467,16 +475,17 @@ def _check_precision(
         least = error_at_point(task, at)
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
-                f"{name}: expected a bound of {item['output']} of at least {least / unit:.6g} units, because the error "
-                f"at a point of the box is that large, got {item['units']}"
+                f"{name}: expected an error bound of {item['output']} of at least {least / unit:.6g} units of "
+                f"{unit:g}, because the error at the stored worst point can be that large, got {item['units']} units"
             )
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
     """Return the bound of a task's rounding error at the single point ``at``, the values of the inputs.
 
-    The bound on any box that contains the point is at least as large. The result is 0 if no finite bound exists there,
-    and -1 if the point is not in the region, the part of the box for which errors are bounded.
+    The result is a lower limit for any bound on a box that contains the point, so that it refutes smaller bounds. It is
+    0 if no finite bound exists at the point, which refutes nothing, and -1 if the point is not in the task's region
+    (:class:`~symrot.certificates.rounding.region.Region`).
     """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(

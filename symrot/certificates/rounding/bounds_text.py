@@ -48,7 +48,7 @@ def library_section(name: str, source: str) -> Section | str:
     Derivatives are bounded on request only: they have many outputs, and the search takes minutes for some of them.
     """
     if BY in name:
-        return f"{name}: `symrot certify {name} --box NAME=LOW:HIGH` bounds the errors of derivatives on a box"
+        return f"{name}: no bounds of derivatives are stored; `symrot certify {name} --box NAME=LOW:HIGH` computes them"
     return _sections(name, *operations_of(name, source))
 
 
@@ -119,9 +119,9 @@ def region_of(section: Mapping[str, Any]) -> Region:
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return restrictions of inputs as phrases:
+    """Return a phrase for each restriction of the inputs; an empty list if the inputs are not restricted.
 
-    ``q0, q1, q2, q3: squares add up to 1, but for ..``; empty without any.
+    An example is ``q0, q1, q2, q3: squares add up to 1, but for 2^-20``, where 2^-20 is the tolerance of the sum.
     """
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]

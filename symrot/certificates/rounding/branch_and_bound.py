@@ -49,7 +49,13 @@ class SearchResult:
 
 @dataclass
 class _Parts:
-    """The parts (sub-boxes) of a search, with their chosen branches, error bounds and obstacles, as in Evaluation."""
+    """The parts (sub-boxes) of a search, with what is known about each part.
+
+    ``decided`` holds the branch of each condition on a part: 1 if the relation holds, 0 if not, -1 if both are
+    possible. The other fields are those of :class:`~symrot.certificates.rounding.adjoint.Evaluation`: the error bound,
+    the node that prevents a finite bound (``obstacle``), and a condition that holds on a piece of the part only
+    (``undecided``).
+    """
 
     boxes: Array  # (2, inputs, n)
     decided: NDArray[np.int8]  # (conditions, n)
@@ -92,7 +98,11 @@ class _BoundSearch:
         self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
-        """Return the error bounds of boxes; a limited number of boxes is evaluated at a time, to limit memory."""
+        """Return the error bounds of boxes, computed CHUNK boxes at a time to limit memory.
+
+        ``decided`` holds the branch of each condition on each box: 1 if the relation holds, 0 if not, -1 if both are
+        possible.
+        """
         count = boxes.shape[2]
         self.evaluations += count
         chunks = [
@@ -109,7 +119,11 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that contain allowed inputs (unit quaternions), shrunk to these, with their error bounds."""
+        """Return parts of the search: the boxes that contain allowed inputs, each with its error bound.
+
+        Allowed are the inputs in the region, such as unit quaternions. Each box is shrunk to the allowed inputs in it.
+        ``decided`` holds the branches of conditions, as for :meth:`evaluate`.
+        """
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
         inside = evaluation.bound >= 0
@@ -134,7 +148,11 @@ class _BoundSearch:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
     def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
-        """Split each part in two or four; return the new boxes and the branches already chosen for them."""
+        """Split each part (a sub-box) into two or four boxes; return the boxes and the branches chosen for them.
+
+        A part with an undecided condition gives two boxes, one for each branch. Any other part is halved in one input,
+        or in two inputs, which gives four boxes, if :meth:`directions` names a second input.
+        """
         choosing = parts.undecided >= 0
         boxes, decided = [], []
         if choosing.any():
@@ -186,8 +204,9 @@ class _BoundSearch:
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return, for each part, the two inputs whose ranges, when shrunk, lower the bound most.
 
-        The second input is -1 if its gain (reduction of the bound) is at most ``SECOND`` times the first gain.
-        ``otherwise`` is the first input where no range lowers the bound.
+        For a part whose bound no shrinking lowers, the first input is that of ``otherwise``. The second input is -1 if
+        its gain (reduction of the bound) is at most ``SECOND`` times the first gain. ``relative`` holds the width of
+        each range, as a share of its width in the whole box.
         """
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
@@ -256,7 +275,12 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Run one search, with mean value forms or with plain intervals only, and return its result."""
+    """Run one search and return its result.
+
+    ``run`` says whether it uses mean value forms or plain intervals only. The search ends when the bound is at most 2 %
+    above the error at the worst point, or after ``budget`` evaluated boxes. With a number ``target``, it also ends as
+    soon as the bound is known to be at most ``target``, or known to be larger.
+    """
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -293,14 +317,22 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its largest relative width among the inputs of the node that prevents a bound."""
+    """Return, for each part, how narrow it is: the largest width among the inputs on which its obstacle depends.
+
+    The obstacle is the node that prevents a finite bound. A width is divided by the width of the same input in the
+    whole box.
+    """
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))
 
 
 def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int]:
-    """Return the middle of the narrowest part without a bound, and the node that prevents a bound there."""
+    """Return (a point, a node) that tell where no bound exists: the middle of the narrowest part without a bound.
+
+    Narrowest means the least :func:`_spread`. The node is the divisor or radicand, or else the function value, that
+    prevents a bound on this part; the message of an error names both.
+    """
     first = int(np.argmin(np.where(np.isinf(parts.bound) & (parts.obstacle >= 0), _spread(run, parts), inf)))
     obstacle = int(parts.obstacle[first])
     return tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), run.graph.singular_operand(obstacle)

@@ -17,9 +17,11 @@ __all__ = ["CentredForms"]
 
 
 class _CentredForm:
-    """A polynomial on boxes: its value at the middle, its gradient (2, inputs, n), and a bound of rounding errors.
+    """The mean value form of one node on each box: a polynomial, known by its value at the middle and its gradient.
 
-    Every value between exact and computed is within ``deviation`` of a value of the polynomial.
+    ``middle`` are intervals of the values at the middle, ``gradient``, of shape (2, inputs, n), intervals of the
+    derivatives on the box. At every point of a box, the exact value of the node, its computed value and all numbers
+    between them differ from the polynomial by at most ``deviation``.
     """
 
     __slots__ = ("deviation", "gradient", "middle")

@@ -36,8 +36,9 @@ def decide_branches(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Write the branch of a condition into ``decision`` for all boxes on which only one branch is possible.
 
-    Return two Boolean arrays: on which boxes the branch that was decided before is impossible, and on which boxes both
-    branches are possible.
+    ``a`` and ``b`` are intervals of the two compared numbers. ``decision`` holds 1 if the relation holds on a box, 0 if
+    not, -1 if that is open; only -1 is replaced. Return two Boolean arrays: on which boxes the branch in ``decision``
+    was chosen before this call but is impossible, and on which boxes both branches are possible.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)

@@ -163,7 +163,8 @@ def tangent_gap_slope(x: Array) -> Array:
 def sine_gap_slope(x: Array) -> Array:
     """Return intervals that contain the derivative of ``sine_gap``, the function (x - sin x)/x^3.
 
-    The derivative is -x times the integral of (1-s)^2 s sin(xs)/(2x) over s from 0 to 1, which decreases until x = 4.4.
+    The derivative is -x I(x), where I(x) is the integral of ``(1-s)^2 s sin(x s)/(2 x)`` over s from 0 to 1. I(x)
+    decreases from 1/60 at x = 0 until x = 4.4.
     """
     return negative(multiply_loosely(x, _sine_gap_factor(x)))
 
@@ -220,8 +221,8 @@ def _slope_at(a: Array, b: Array) -> Array:
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
     """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
 
-    With ``s = r sin(a)``, ``c = r cos(a)`` and the radius r, these three are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r
-    sinc a)^2`` and ``-1/r^2``, which are finite at ``a = 0``.
+    With ``s = r sin(a)``, ``c = r cos(a)`` and the radius r, these three are ``1/(r sinc a)``, ``-4 a g(2a)/(r sinc
+    a)^2`` and ``-1/r^2``, which are finite at ``a = 0``. Here g is :func:`sine_gap`, ``g(x) = (x - sin x)/x^3``.
     """
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
     one = np.ones_like(s)

@@ -1,7 +1,10 @@
-"""Rounding error bounds of the library's kernels: their boxes, a parallel search, and the largest box for a bound.
+"""Rounding error bounds of the library's kernels: the ranges of inputs on which they hold, and their computation.
 
-:func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds many kernels in several
-processes, so that :func:`symrot.certificates.rounding.bounds.rounding_section` finds every bound in the store.
+A box is a range for each input; a region restricts the inputs further, for example to unit quaternions.
+:func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds the errors of many kernels in
+several processes, and puts the bounds into the store of :mod:`symrot.certificates.rounding.store`, where
+:func:`symrot.certificates.rounding.bounds.rounding_section` reads them. A further function finds the largest box on
+which an error stays below a number.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence

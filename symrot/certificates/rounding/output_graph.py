@@ -31,10 +31,18 @@ CALLS = ("sin", "cos", "atan2")
 class OutputGraph:
     """The computation of one output: nodes, each after its operands; the last node is the output.
 
-    The nodes are those of :class:`Operations`, and ``("square", i)``, ``("sin", i)``, ``("cos", i)``, ``("atan2", i,
-    j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``, ``("gap", name, OutputGraph, i)``
-    and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are tuples (relation, i, j) that
-    compare the nodes i and j.
+    A node is a tuple of a kind and its operands, the indices of earlier nodes. Besides those of :class:`Operations`
+    there are::
+
+        ("in", number)                     an input
+        ("square", i) ("sin", i) ("cos", i) ("atan2", i, j)
+        ("norm", roundings, i, ...)        sqrt of a sum of squares whose computation has ``roundings`` roundings
+        ("sinc", i)                        sin(x)/x
+        ("arc_ratio", i, j)                atan2(s, c)/s
+        ("gap", name, OutputGraph, i)      (x - sin x)/x^3 or (sin x - x cos x)/x^3, with its own computation from x
+        ("select", condition, x, y)        x if the condition holds, else y
+
+    ``conditions`` are tuples (relation, i, j) that compare the nodes i and j.
     """
 
     precision: str
@@ -70,11 +78,11 @@ class OutputGraph:
 
     @cached_property
     def contraction_safe(self) -> bool:
-        """Whether the bound also holds with fused multiply-adds: whether each product in a sum is used nowhere else.
+        """Whether the rounding error bound of this output also holds if a compiler uses fused multiply-adds.
 
-        A fused multiply-add makes one rounding error, at most the sum of the two errors that it replaces. A product
-        that is fused in one place and rounded in another has two different errors, which no longer cancel where
-        derivatives have opposite signs.
+        It does if each product in a sum is used nowhere else: a fused multiply-add makes one rounding error, at most
+        the sum of the two errors that it replaces. A product that is fused in one place and rounded in another has two
+        different values. The bound would be wrong, because it lets the effects of one error on the output cancel.
         """
         users: list[list[int]] = [[] for _ in self.nodes]
         for index in range(len(self.nodes) - 1, -1, -1):
@@ -89,7 +97,10 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """For each node, whether it has no rounding error: inputs, their signs and absolute values, short constants."""
+        """For each node, whether it has no rounding error: an input, its sign or size, or a constant such as 1/2.
+
+        A constant is exact if :func:`is_short` finds few significant bits.
+        """
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -126,7 +137,11 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the index of the divisor or radicand that can make a node infinite, or of the node itself."""
+        """Return the index of the node whose value 0 makes the value or derivative of the node ``index`` infinite.
+
+        That is the divisor of a quotient and the radicand of a square root. For any other kind of node, ``index``
+        itself is returned.
+        """
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
@@ -155,9 +170,10 @@ def is_short(value: Fraction) -> bool:
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return (node, sign) such that sign*node equals ``sign`` times node ``index`` modulo 2 pi.
+    """Return (index of a node, its sign) such that the two products below are equal modulo 2 pi.
 
-    Constants near 2 pi are dropped from sums.
+    They are that sign times that node, and the argument ``sign`` times the node ``index``. Constants near 2 pi are
+    dropped from sums: for the node ``2*pi - x`` and ``sign`` 1, the result is (index of x, -1).
     """
     node = graph.nodes[index]
     if node[0] == "neg":
@@ -301,7 +317,11 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return a node ``gap`` if the operation chooses between a series near zero and its formula, otherwise None."""
+    """Return the index of a node ``gap`` if the operation ``node`` computes such a function, otherwise None.
+
+    A gap function is (x - sin x)/x^3 or (sin x - x cos x)/x^3. The C text computes it as ``x*x < c ? series :
+    formula``; its value at x = 0 tells which of the two it is.
+    """
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]

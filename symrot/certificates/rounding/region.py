@@ -22,8 +22,9 @@ UNIT_NORM = 2.0**-20  # tolerance of the squared norm of a unit quaternion; roun
 class Region:
     """Restrictions of the inputs in a box, such as a quaternion of unit norm.
 
-    ``unit`` are groups of places whose squares add up to 1, within 2^-20; ``clearance`` is the least length of the
-    vector (y, x) of arguments of every atan2, so that the angle is defined.
+    ``unit`` are groups of input components, such as ``("q[0]", "q[1]", "q[2]", "q[3]")``, whose squares add up to 1,
+    within 2^-20; ``clearance`` is the least length of the vector (y, x) of arguments of every atan2, so that the angle
+    is defined.
     """
 
     unit: tuple[tuple[str, ...], ...] = ()
@@ -73,7 +74,11 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and the largest |x| for which x^2 and the squares of ``others`` sum to 1."""
+    """Return the least and the largest |x| for which x^2 and the squares of ``others`` sum to 1, within UNIT_NORM.
+
+    ``others`` are intervals, each on ``count`` boxes, so that there is a range of x. Both numbers are 0 where the other
+    squares already exceed 1.
+    """
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:
         rest = intervals.add(rest, intervals.negative(intervals.square(other)))

@@ -6,8 +6,11 @@ bound depends: the operations, the box, the region, the budget and the error of 
 (:class:`~symrot.certificates.rounding.bounds.BoundTask`).
 """
 
+import ast
 import hashlib
+import io
 import json
+import tokenize
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from functools import cache
@@ -17,28 +20,48 @@ from typing import Any
 from symrot.build import cache as cache_files
 from symrot.certificates.rounding.branch_and_bound import SearchResult
 
-__all__ = ["TABLE", "Store", "method", "printed_table", "table"]
+__all__ = ["TABLE", "Store", "code_without_prose", "method", "printed_table", "table"]
 
 TABLE = Path(__file__).with_name("bounds.json")
 _METHOD = ("intervals", "functions", "output_graph", "region", "choices", "centred", "adjoint", "branch_and_bound")
 _NUMBERS = ("bound", "pointwise", "largest_value")
 
 
+def code_without_prose(source: str) -> str:
+    """Return Python source without its docstrings, its comments and the lines that then are blank.
+
+    All other characters stay as they are, so that the result is the same in every version of Python:
+    ``"def f(x):\\n    # why\\n    return x  # m\\n"`` gives ``"def f(x):\\n    return x\\n"``.
+    """
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, documented)]
+    docstrings = {node.body[0].lineno for node in nodes if ast.get_docstring(node, clean=False) is not None}
+    lines = source.split("\n")
+    for token in reversed(list(tokenize.generate_tokens(io.StringIO(source).readline))):
+        (first, left), (last, right) = token.start, token.end
+        begins_line = not lines[first - 1][:left].strip()
+        is_docstring = token.type == tokenize.STRING and first in docstrings and begins_line
+        if token.type == tokenize.COMMENT or is_docstring:
+            rest = (lines[first - 1][:left] + lines[last - 1][right:]).rstrip()
+            lines[first - 1 : last] = [rest] if rest else []
+    return "\n".join(lines)
+
+
 @cache
 def method() -> str:
-    """Return the SHA-256 of the source files that compute bounds, called the method.
+    """Return the SHA-256 of the source files that compute bounds, called the method, without docstrings and comments.
 
-    It is a part of the key of each stored bound, so that a bound by other sources is not used.
+    It is a part of the key of each stored bound, so that a bound by other code is not used.
     """
-    here = Path(__file__).parent
-    return hashlib.sha256(b"".join((here / f"{name}.py").read_bytes() for name in _METHOD)).hexdigest()
+    sources = (Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _METHOD)
+    return hashlib.sha256("\0".join(map(code_without_prose, sources)).encode()).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
     """Return the table of bounds that comes with symrot, as a map with two keys.
 
-    ``bounds`` maps the key of a task to its bound; ``method`` is the hash of the sources that made them.
+    ``bounds`` maps the key of a task to its bound; ``method`` is the hash of the code that computed them.
     """
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))

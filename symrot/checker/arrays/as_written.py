@@ -12,6 +12,7 @@ from symrot.checker.claim.tree import Node, number, product, walk
 __all__ = ["as_written", "has_arrays", "is_odd"]
 
 QUATERNION, UNIT = ("qmul", "conjugate"), eye()
+IMAGINARY = Node("name", "i")
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
@@ -24,8 +25,42 @@ def has_arrays(sides: Sequence[Node]) -> bool:
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether the sides of a repair contain ``i^T``: nobody transposes i, so such a repair is not offered."""
-    return Node("transpose", None, (Node("name", "i"),)) in [node for side in sides for _, node in walk(side)]
+    """Return whether nobody would write the sides of a repair, so that it is not offered.
+
+    They contain ``i^T``, or a change inside only one part of a trace of Pauli's matrices (its real or imaginary one).
+    """
+    nodes = [node for side in sides for _, node in walk(as_written(side))]
+    return Node("transpose", None, (IMAGINARY,)) in nodes or any(map(_is_imaginary_trace, nodes))
+
+
+def _is_imaginary_trace(node: Node) -> bool:
+    """Return whether a formula is ``trace(-i M)``, which only stands for the imaginary part of ``trace(M)``."""
+    inside = node.args[0].args[0] if node.value == "trace" and node.args[0].kind == "neg" else node
+    return inside is not node and inside.kind == "product" and inside.args[0] == IMAGINARY
+
+
+def _trace(terms: Sequence[Node]) -> Node | None:
+    """Return ``trace(M)`` for the terms ``trace(M)/2`` and ``trace(-i M) i/2``, its two parts; None for other terms."""
+    traces = [[factor for factor in term.args if factor.value == "trace"] for term in terms if term.kind == "product"]
+    if len(terms) != 2 or [len(own) for own in traces] != [1, 1] or not _is_imaginary_trace(traces[1][0]):
+        return None
+    (real,), (imaginary,) = traces
+    half = Node("inv", None, (number(2),))
+    parts = product([half, real]), product([half, imaginary, IMAGINARY])
+    inside = product(list(imaginary.args[0].args[0].args[1:]))
+    return real if tuple(terms) == parts and inside == real.args[0] else None
+
+
+def _determinant(factors: Sequence[Node]) -> Node | None:
+    """Return ``det(M)`` for the factors of ``1/2 (trace(M) trace(M) - trace(M M))``; None for other factors."""
+    if len(factors) != 2 or factors[0] != Node("inv", None, (number(2),)) or factors[1].kind != "sum":
+        return None
+    square, *rest = factors[1].args
+    matrix = square.args[0].args[0] if square.kind == "product" and square.args[0].value == "trace" else None
+    if matrix is None or tuple(square.args) != (square.args[0],) * 2:
+        return None
+    of_square = Node("neg", None, (Node("call", "trace", (product([matrix, matrix]),)),))
+    return Node("call", "det", (matrix,)) if rest == [of_square] else None
 
 
 def as_written(tree: Node) -> Node:
@@ -50,7 +85,9 @@ def as_written(tree: Node) -> Node:
         return args[0].args[0]
     if tree.kind == "product":
         rest = [factor for factor in args if factor not in (UNIT, number(1))]
-        return product(rest) if rest else number(1)
+        return _determinant(rest) or (product(rest) if rest else number(1))
+    if tree.kind == "sum" and (trace := _trace(args)) is not None:
+        return trace
     return number(1) if tree == UNIT else tree
 
 

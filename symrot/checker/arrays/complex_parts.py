@@ -149,9 +149,12 @@ def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]
     """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
 
     ``letter`` is the imaginary unit in the results. Only z, w and zeta, with or without a number as in w_1, can be
-    complex numbers. They are if the formulas have the conjugate, the real part or the imaginary part of one of them, or
-    have ``z_bar`` and also an absolute value, a conjugate, Re or Im of anything. The result is empty for formulas with
-    integrals or with other barred names: there ``z_bar`` is a coordinate of a centre of mass.
+    complex numbers. All of them that the formulas use are taken as complex in two cases: ``conjugate``, ``Re`` or
+    ``Im`` is applied to one of them, or one is barred (``z_bar``) and the formulas also have an absolute value,
+    ``conjugate``, ``Re`` or ``Im``.
+
+    The result is empty in all other cases, for formulas with integrals, and for formulas that bar any other name: there
+    ``z_bar`` is a coordinate of a centre of mass.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]

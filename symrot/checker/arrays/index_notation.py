@@ -158,9 +158,11 @@ def _counts(term: Node) -> Counter[str]:
 
 
 def _counts_of_terms(integrand: Node) -> Counter[str]:
-    """Return the free indices of the integrand of an integral over a body, each counted once.
+    """Return the free indices of the integrand of an integral over a body, {"i": 1, "j": 1} for ``r_i r_j``.
 
-    An index that occurs twice in a term of the integrand is not counted: it is summed inside the integral.
+    An index is free if it occurs once in a term of the integrand. An index that occurs twice in a term, as k in ``r_k
+    r_k``, is summed inside the integral and is left out. If the terms have different free indices, the value is the
+    number of terms that have the index.
     """
     free = [_once(_counts(term)) for term in _terms(integrand)]
     return free[0] if len({frozenset(own) for own in free}) == 1 else sum(free, Counter())

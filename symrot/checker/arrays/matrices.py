@@ -70,8 +70,8 @@ def _list(members: Sequence[Node]) -> Node:
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
     """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``.
 
-    The names in ``known``, which the claim defines, are left out. So is that of the unit matrix, unless it is the only
-    argument of a determinant or trace.
+    Left out are the names in ``known``, which the claim defines, and names of the unit matrix such as I. Only in
+    ``det(I)`` and ``tr(I)`` does I count as a matrix of the claim, for example an inertia tensor.
     """
     names: dict[str, None] = {}
     for side in sides:
@@ -110,9 +110,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return the matrices R of equations such as ``R' = skew(w) R``, each with whether it depends on time as R(t).
+    """Return the matrices R of equations such as ``R' = skew(w) R``, mapped to whether R is a function of time.
 
-    It does not if the text has the plain name R_dot for its rate.
+    The value is True if the equation has the time derivative of R, as in ``R'`` or ``R' R^T``: R is then R(t). It is
+    False if the equation writes the rate as a symbol ``R_dot``: R is then a matrix of plain symbols.
     """
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):

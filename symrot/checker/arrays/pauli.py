@@ -27,7 +27,10 @@ SIZE = 4
 PARTS = ("name", "number", "sum", "product", "neg", "power", "inv", "list")
 """The kinds of formulas in which letters may be matrices; sines and cosines are scalars."""
 
-CALLS = ("sin", "cos", "trace", "Matrix")
+OF_MATRICES = ("trace", "det")
+"""Functions of a matrix only: their arguments are Pauli's matrices, since a stress sigma_x has no trace."""
+
+CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
 """The functions in equations of Pauli's matrices."""
 
 
@@ -35,9 +38,15 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
 
     The definitions give the matrices that occur, i and the unit matrix, each as a real 4 x 4 matrix. Names like sigma_x
-    are Pauli's matrices if the equation has two of them and i, or a product or power of them and no other name.
-    Otherwise sigma_x is a number, such as a stress: the equation is then returned unchanged, with no definitions. So it
-    is if one of these names is in ``known``, the names that the claim defines.
+    mean Pauli's matrices in each of these equations:
+
+    - it has i and at least two of the names, as ``sigma_x sigma_y = i sigma_z``;
+    - it has a product or power of the names and no other name, as ``sigma_x^2 = 1``;
+    - it has the trace or the determinant of one, as ``det(sigma_x) = -1``;
+    - it gives the square of a sum of them without new letters, as ``(a sigma_x + b sigma_y)^2 = a^2 + b^2``.
+
+    In any other equation sigma_x is a number, such as a stress. The equation is then returned unchanged, with no
+    definitions. The same holds if the claim itself defines one of the names or i (``known`` are the names it defines).
 
     Raises
     ------
@@ -54,7 +63,8 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     is_plain = all(node.kind in PARTS or (node.kind == "call" and node.value in CALLS) for node in nodes)
     sigmas = [node for node in nodes if node.kind == "name" and node.value in NAMES]
     multiplied = any(_is_product_of_matrices(node) for node in nodes) and used <= {*NAMES, UNIT_MATRIX}
-    is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied
+    of_matrix = any(node.value in OF_MATRICES and _names_in(node) & {*NAMES} for node in nodes if node.kind == "call")
+    is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied or of_matrix or _is_square(left, right)
     is_known = bool({*known} & {*matrices, IMAGINARY})
     if not matrices or names_another or not is_plain or not is_evident or is_known:
         return relation, ()
@@ -69,6 +79,23 @@ def _is_product_of_matrices(node: Node) -> bool:
     """Return whether a formula is a product with two of Pauli's matrices, or a power of one."""
     factors = [part for part in node.args if part.kind == "name" and part.value in NAMES]
     return (node.kind == "product" and len(factors) > 1) or (node.kind == "power" and bool(factors))
+
+
+def _is_square(left: Node, right: Node) -> bool:
+    """Return whether one side is a square of a sum with two Pauli matrices, and the other a number of its letters.
+
+    For numbers sigma_x and sigma_y, the other side would contain them.
+    """
+    for side, other in ((left, right), (right, left)):
+        bases = [node.args[0] for _, node in walk(side) if node.kind == "power" and node.args[1] == number(2)]
+        squared = any(len(_names_in(base) & {*NAMES}) > 1 for base in bases)
+        if squared and not _names_in(other) & {*NAMES} and _names_in(other) <= {*_names_in(side), UNIT_MATRIX}:
+            return True
+    return False
+
+
+def _names_in(tree: Node) -> set[str]:
+    return {str(node.value) for _, node in walk(tree) if node.kind == "name"}
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
@@ -93,9 +120,15 @@ def _with_commutators(tree: Node) -> Node:
 def _with_traces(tree: Node) -> Node:
     """Return a tree in which each trace, of a complex 2 x 2 matrix M, is a formula of the real 4 x 4 matrix R for M.
 
-    It is ``tr(R)/2 + i tr(-i R)/2``, since each real entry of M occurs twice in R.
+    It is ``tr(R)/2 + i tr(-i R)/2``, since each real entry of M occurs twice in R. The determinant of M is
+    ``((tr M)^2 - tr(M M))/2``.
     """
     args = tuple(map(_with_traces, tree.args))
+    if tree.kind == "call" and tree.value == "det":
+        (matrix,) = args
+        trace, trace_of_square = (Node("call", "trace", (part,)) for part in (matrix, product([matrix, matrix])))
+        difference = sum_of([product([trace, trace]), negated(trace_of_square)])
+        return _with_traces(product([Node("inv", None, (number(2),)), difference]))
     if tree.kind != "call" or tree.value != "trace":
         return replace(tree, args=args)
     half, unit = Node("inv", None, (number(2),)), Node("name", IMAGINARY)

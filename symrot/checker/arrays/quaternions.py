@@ -128,7 +128,9 @@ def _without_squares(node: Node) -> Node:
 
 
 def quaternion_product(left: Node, right: Node) -> Node:
-    """Return the tree of the product of two quaternions; scalar factors of the left one, all but its last, come first.
+    """Return the tree of the product of two quaternions, with the scalar factors of ``left`` in front.
+
+    If ``left`` is a product, its last factor is the quaternion, and the factors before are scalars: ``q/2`` times p.
 
     Examples
     --------
@@ -189,9 +191,10 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return [q] for ``v' = q v q`` and ``q' = 1/2 omega q``, where q must be a quaternion; an empty list otherwise.
+    """Return [q] for ``v' = q v q`` and for ``q' = 1/2 omega q``; an empty list for other equations.
 
-    The text of such an equation may have lost the sign of the conjugate.
+    Only a quaternion q makes sense in such an equation: numbers would commute. So q is read as a quaternion. In ``q v
+    q`` the last factor was probably the conjugate of q, whose sign was lost when the text was copied.
     """
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
@@ -211,10 +214,11 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return q if a side is ``q v q^-1``, ``q v q_bar`` or one of these in reverse order, and rotates v; or None.
+    """Return the quaternion q if ``side`` is a rotation of a vector v such as ``q v q^-1``; otherwise None.
 
-    It rotates v if the ``other`` side is ``R v``, or a name with the same first letter as v, such as ``v'``. The
-    letters are no numbers: numbers commute, so that nobody would write such a product.
+    ``side`` must be ``q v q^-1``, ``q v q_bar`` or one of these in reverse order, and the ``other`` side must be the
+    rotated vector: ``R v``, or a name with the same first letter as v, such as ``v'``. Then q is no number: numbers
+    commute, so nobody would write such a product of numbers.
     """
     if side.kind != "product" or len(side.args) != 3:
         return None

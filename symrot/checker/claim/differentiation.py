@@ -53,7 +53,7 @@ def as_functions(claim: Claim) -> Claim | None:
 
 
 def _letters(tree: Node) -> set[str]:
-    """Return the names in a tree that are symbols, x, or functions of time, f for ``f(t)``."""
+    """Return the names in a tree: those of symbols (x), and those of functions of time (f if ``f(t)`` occurs)."""
     return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
 
 

@@ -52,7 +52,7 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
             scope.divide_by(below(value), node)
         made = function(value)
         if value.is_number and not made.is_Rational and enclosure(made) is None:
-            raise scope.fail(node, "a number that can be computed to many digits instead of deeply nested functions")
+            raise scope.fail(node, "a number whose digits symrot can compute (with fewer functions inside one another)")
         return made
 
     return call

@@ -112,7 +112,8 @@ def _sum(interpreter: Interpreter, node: Node) -> Any:
         return total
     first = described(values[0])
     other, actual = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
-    raise interpreter.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {actual}")
+    expected = f"every term of the sum to be {first} like the first one (this one is {actual})"
+    raise interpreter.fail(node.args[other], expected)
 
 
 def _product(interpreter: Interpreter, node: Node) -> Any:

@@ -118,9 +118,11 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return a quantity and its formula if a claim is no identity, but may hold by the meaning of its letters.
+    """Return the two sides of a claim that is no identity, but may hold by the meaning of its letters; otherwise None.
 
-    ``k^2 = I/m`` gives k, and ``m*a == m*g - T`` relates several quantities. Return None for any other claim.
+    If one side is a quantity, or can be solved for one, the result is that quantity and its formula: k and its square
+    for ``k^2 = I/m``. If the claim relates several quantities, as ``m*a == m*g - T`` does, the left side takes the
+    place of the quantity and the right side that of the formula.
     """
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
@@ -247,8 +249,9 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 def _depends_on_own_letters(claim: Claim) -> bool:
     """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not.
 
-    Return False for ``x*cos(a) == x*cos(b)``, whose sides become equal if b replaces a: there one letter is probably a
-    slip, and the claim is false.
+    There is one exception. In ``x*cos(a) == x*cos(b)`` each side depends on one such symbol, and the sides become equal
+    if b replaces a. One of the two letters is then probably a slip: the result is False, and the claim can be decided
+    as false.
     """
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
@@ -290,9 +293,10 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation defines the angle between vectors, its only scalar: ``a . b = |a| |b| cos(theta)``.
+    """Return whether an equation defines the angle between two vectors: ``a . b = |a| |b| cos(theta)``.
 
-    ``generic`` are the names of vectors without a definition.
+    This is so if the angle, which occurs once inside cos or sin, is the only scalar in the equation. ``generic`` are
+    the names of vectors without a definition.
     """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]

@@ -66,11 +66,14 @@ class TypedNotation:
         """
         if node.kind == "call" and node.value == "diff":
             name = str(node.args[0].value)
-            if name not in self.timed or not _is_rate(node):
+            if name not in self.timed or not (_is_rate(node) or _is_rate_of_name(node)):
                 return replace(node, args=tuple(self._in_full(child) for child in node.args))
             return Node("name", self.spelling.get(name, name) + "'" * (len(node.args) - 1))
         if node.kind == "call" and node.value in self.timed:
             return Node("name", self.spelling.get(str(node.value), node.value))
+        if node.kind == "call" and node.value == "qmul":
+            factors = [self._spelled(factor, "call") for factor in node.args]
+            return Node("name", " ⊗ ".join(f"({text(f)})" if f.kind in BOUND_LOOSELY else text(f) for f in factors))
         if node.kind == "call" and node.value == "Matrix" and parent not in ("call", "power", "index"):
             return self._spelled(node.args[0], "list")
         if node.kind == "number":
@@ -141,6 +144,9 @@ def notation_of(reading: Reading) -> TypedNotation:
     return TypedNotation(reading.plain, dict(reading.spelling), reading.timed)
 
 
+BOUND_LOOSELY = ("sum", "neg", "product")
+"""The kinds of trees that need brackets as factors of a product of quaternions."""
+
 END = Node("name", "")
 """A stand-in for the factor after the last one."""
 
@@ -155,6 +161,11 @@ def _is_number_power(node: Node) -> bool:
 
 def _is_over_digit(node: Node) -> bool:
     return node.kind == "inv" and str(node.args[0].value).isdigit()
+
+
+def _is_rate_of_name(node: Node) -> bool:
+    """Return whether a derivative is that of a name by time, as that of a quaternion q, whose components move."""
+    return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 
 
 def _is_rate(node: Node) -> bool:

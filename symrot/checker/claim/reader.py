@@ -1,9 +1,10 @@
 """The reader of claims: it parses text into trees, without Python's ``eval`` and without SymPy.
 
-It reads SymPy syntax (``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and ``M[0, 1]``),
-and formulas as people type them: ``2x``, ``sin^2 x``, ``m g l``, ``x'``, ``ω₁``, ``½``, chains ``a = b = c``, several
-lines. Any other text is refused with its position; nothing is dropped. SymPy syntax has one reading (interpretation);
-any other text may have several, of which the usual one comes first.
+It reads two notations: SymPy syntax (``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and
+``M[0, 1]``), and formulas as people type them (``2x``, ``sin^2 x``, ``m g l``, ``x'``, ``ω₁``, ``½``, chains ``a = b =
+c``, several lines). Text in neither notation is refused with the position of the fault; nothing is dropped.
+
+SymPy syntax has one reading (interpretation). Typed formulas may have several, of which the usual one comes first.
 """
 
 import re
@@ -131,7 +132,7 @@ class Reading:
 
     @property
     def relation(self) -> Relation:
-        """The only relation of the text."""
+        """The relation of a text that has exactly one, as (sign, left, right); of a longer text, the first one."""
         return self.lines[0].links[0]
 
 
@@ -238,10 +239,14 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words of the text that are split into names, notes about them, and those that are ambiguous.
+        """Return the words that are products of names, such as mgl; notes about them; and the ambiguous places.
 
-        Each word is mapped to its names, ``mgl`` to m, g, l. ``alone`` are names that occur by themselves, ``vectors``
-        are not split, and ``flips`` are the keys of ambiguous words that get their less usual meaning.
+        The first result maps each such word to its names: "mgl" to ("m", "g", "l"). The second has a sentence for each
+        word of which the user should know that it was split. The third has a Doubt for each word that can also be one
+        name: its ``key`` is the kind of the ambiguity and the position of the word.
+
+        ``alone`` are names that also occur by themselves, and ``vectors`` are names that are not split. ``flips`` has
+        the keys of the ambiguous words that get their less usual meaning in this reading of the text.
         """
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
@@ -298,8 +303,9 @@ class _Text:
     ) -> list[Token]:
         """Return tokens in which cos(θ) and sin(θ) replace the short forms cθ and sθ.
 
-        Usually they are short forms if the text has both, and if neither c nor s occurs alone; in the less usual
-        reading, which ``flips`` asks for, it is the reverse. Notes and ambiguous places are added to ``notes`` and
+        In the usual reading, letters such as cθ and sθ are short forms if the text has both and if neither c nor s
+        occurs alone; otherwise they are names. If ``flips`` has the key of this ambiguity, the less usual reading is
+        returned, in which names and short forms are exchanged. Notes and ambiguous places are added to ``notes`` and
         ``doubts``.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
@@ -345,7 +351,10 @@ class _Text:
         return tokens
 
     def has_first_and_last(self, letter: str) -> bool:
-        """Return whether the text has ``ωi`` and ``ωf``, an initial and a final value, and neither i nor f alone."""
+        """Return whether the text has the initial and the final value of ``letter``, as ``ωi`` and ``ωf`` for ω.
+
+        The result is False if i or f also occurs as a name of its own: then ``ωi`` is probably ω times i.
+        """
         pairs = list(pairwise(self.tokens))
         after = {second.text for first, second in pairs if first.text == letter and second.tight}
         alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
@@ -377,7 +386,7 @@ class _Text:
     def is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
         """Return whether ``token`` is a comma between two equations on one line, as in ``a = b, c = d``.
 
-        ``line`` are the tokens of the line before it, ``tokens`` those of the whole text.
+        ``line`` are the tokens in front of the comma on its line, ``tokens`` those of the whole text.
         """
         if token.text != "," or not any(piece.text in SIGNS for piece in line):
             return False
@@ -519,14 +528,26 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors."""
-    texts = [token.text for token in tokens if token.kind != "end"]
-    for sides in (texts, texts[::-1]):
-        first, dot, second, sign, *rest = [*sides, *[""] * 4]
-        names = [word for word in rest if word and word not in ("*", "·", "|", "(", ")")]
-        is_product = dot == "·" and sign in ("=", "==") and is_usual_vector(first) and is_usual_vector(second)
+    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors.
+
+    In ``F·d = F d`` they are vectors too, if books usually mean vectors by them: of numbers, nobody would say this.
+    """
+    sides: list[list[str]] = [[]]
+    for token in tokens:
+        if token.text in ("=", "=="):
+            sides.append([])
+        elif token.kind != "end":
+            sides[-1].append(token.text)
+    for product, lengths in [*pairwise(sides), *pairwise(sides[::-1])]:
+        if len(product) != 3 or product[1] != "·" or product[0] == product[2]:
+            continue
+        first, _, second = product
+        names = [word for word in lengths if word not in ("*", "·", "|", "(", ")")]
         has_lengths = {first, second} <= {*names} or first + second in names
-        if is_product and first != second and len(names) <= 4 and "cos" in names and has_lengths:
+        has_cosine = "cos" in names and len(names) <= 4 and first.isalpha() and second.isalpha()
+        has_vectors = is_usual_vector(first) and is_usual_vector(second)
+        is_bare = lengths in ([first, second], [second, first], [first + second]) and has_vectors
+        if has_lengths and (is_bare or (has_cosine and (has_vectors or len(first) == len(second) == 1))):
             yield from (first, second)
 
 
@@ -653,9 +674,10 @@ def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iter
 
 
 def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
-    """Return the readings without those that have the same trees as an earlier one.
+    """Return the readings without those that have the same trees as an earlier one, the usual reading first.
 
-    If there are too many to try, a note on the usual reading says so.
+    At most MOST_READINGS are returned. If there are more, the rest is dropped, and a note in the usual reading tells
+    the user about it.
     """
     by_trees: dict[Any, Reading] = {}
     for reading in readings:
@@ -738,9 +760,9 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
         raise complaint(source, where, second.span[0], "one '==', not a chain of them,")
     if hats := [name for name, has_hat in strict.vectors.items() if has_hat]:
         hat = source.index("\N{COMBINING CIRCUMFLEX ACCENT}") if "\N{COMBINING CIRCUMFLEX ACCENT}" in source else 0
-        raise complaint(
-            source, where, hat, f"a vector without a hat here, and {hats[0]} . {hats[0]} = 1 for its length,"
-        )
+        name = hats[0]
+        expected = f"a vector without a hat here (write {name}, and add the hypothesis {name} . {name} = 1)"
+        raise complaint(source, where, hat, expected)
     return strict.relation
 
 

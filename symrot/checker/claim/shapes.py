@@ -114,19 +114,25 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
     """Return the names in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)`` whose shape is not in ``shapes``.
 
-    They must be vectors: each is mapped to the shape (3, 1).
+    They must be vectors: each is mapped to the shape (3, 1). So is v in ``cross(r, m*v)``.
     """
     calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
-    names = [argument for call in calls if call.kind == "call" for argument in call.args
-             if argument.kind == "name" and len(call.args) < 3]  # fmt: skip
+    arguments = [argument for call in calls if call.kind == "call" and len(call.args) < 3 for argument in call.args]
+    names = [name for name in map(_without_mass, arguments) if name.kind == "name"]
     return {str(name.value): (3, 1) for name in names if shapes.get(str(name.value)) is None}
 
 
-def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return names that must be column vectors, since a matrix times the name is a vector; with the shape (3, 1).
+def _without_mass(tree: Node) -> Node:
+    """Return v for ``m*v`` with a mass m, and any other tree unchanged."""
+    is_momentum = tree.kind == "product" and len(tree.args) == 2 and tree.args[0].value in ("m", "M")
+    return tree.args[1] if is_momentum else tree
 
-    In ``q' = (1 + [q] + q q^T) w`` this is w, since q is a vector. ``shapes`` are those of the names whose shape is
-    known.
+
+def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
+    """Return a map from each name that must be a column vector, since a matrix times it is a vector, to (3, 1).
+
+    In ``q' = (1 + [q] + q q^T) w``, where q is known to be a vector and [q] is its skew matrix, the result is {"w": (3,
+    1)}. ``shapes`` maps the names whose shape is known to their shapes.
     """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):

@@ -102,9 +102,11 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim with names free of marks, and whether each name that had a mark has a hat.
+    """Return the sides of a claim without the marks of vectors (bold, an arrow, a hat), and the vectors that they mark.
 
-    Where the name of a vector has no mark, it means the length of the vector and becomes ``sqrt(dot(a, a))``.
+    The second result maps the name of each marked vector to whether its mark was a hat, so that it is a unit vector.
+    Where the name of a vector occurs without its mark, it means the length of the vector and becomes ``sqrt(dot(a,
+    a))``.
 
     Parameters
     ----------
@@ -151,9 +153,10 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "123" if ``used`` has such names, usually "xyz".
+    """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``.
 
-    ``used`` are the names in the claim.
+    For a quaternion, whose components in the claim are numbered from 0 or up to 4, they are "0123" or "1234". The
+    endings for the name R are always numbers. ``used`` are the names in the claim.
     """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:

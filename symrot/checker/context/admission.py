@@ -60,7 +60,11 @@ def sequence_of(name: str) -> str:
 
 
 def place_of(name: str) -> str:
-    """Return the title of the place in the name of a derived formula, such as "about an end", or an empty text."""
+    """Return the place in the name of a derived formula, such as "about an end"; an empty text if it names no place.
+
+    A place is where the axis goes through the body. The result is its title in PLACES, also if the name uses other
+    words for it: "about an end" for a name with "about the centre of an end".
+    """
     places = [(phrase, title) for title, _, phrases in PLACES for phrase in phrases if phrase in name]
     return max(places, key=lambda pair: len(pair[0]))[1] if places else ""
 
@@ -85,10 +89,11 @@ def is_usual_for_body(context: Context, sequence: str) -> bool:
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield how a derived formula with this ``name`` contradicts the context or the index of ``quantity``.
+    """Yield each way in which a derived formula with this ``name`` contradicts the context or ``quantity``.
 
-    Each contradiction is a phrase about the formula, such as "for the space frame" if the context says that components
-    are in the body frame. The formula may be meant if there is none.
+    ``quantity`` is the name for which the claim gives a formula. Its index counts too: a formula for the x axis does
+    not fit I_zz. Each contradiction is a phrase about the formula, such as "for the space frame" if the context says
+    that components are in the body frame. If nothing is yielded, the claim may mean this formula.
     """
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
@@ -114,7 +119,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
         yield "with a radius of gyration"  # r is the radius of the body
     own_place = (meaning.place if meaning else "") or context.place
     if own_place in LINES and (" of a " in name or place):
-        yield from () if _is_along(name, own_place) else (place or "about another axis",)
+        yield from () if _is_along(name, own_place) else (_where_else(place, own_place, name),)
     elif own_place and place and place != own_place and place_exists(own_place):
         yield place
     elif own_place == place and _is_radial(name, quantity):
@@ -155,11 +160,21 @@ def _is_along(name: str, line: str) -> bool:
     )
 
 
-def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether the axis of a moment is the radius to a point of the rim or surface, by the formula's ``name``.
+def _where_else(place: str, line: str, name: str) -> str:
+    """Return where the axis of the formula named ``name`` is, in words; it is not along a ``line`` of its body.
 
-    Hardly anybody means this axis by "about a point of the rim". The result is False if the index of ``quantity`` names
-    the axis, as in I_x: then this axis may be meant.
+    ``place`` is the place in the name. It is no answer if the line passes through it too.
+    """
+    _, bodies = LINES[line]
+    places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
+    return place if place and place not in places else "about another axis"
+
+
+def _is_radial(name: str, quantity: str) -> bool:
+    """Return whether a formula is for the axis along the radius to a point of the rim or surface, by its ``name``.
+
+    Hardly anybody means this axis by "about a point of the rim", so a claim with these words is not compared with the
+    formula. The result is False if the index of ``quantity`` names the axis, as in I_x: then the author may mean it.
     """
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
@@ -177,7 +192,7 @@ def is_component(name: str, quantity: str) -> bool:
 
 
 def place_exists(place: str) -> bool:
-    """Return whether symrot derives formulas for the place with this title."""
+    """Return whether symrot derives formulas for an axis at ``place``, one of the titles in PLACES: "about an end"."""
     return any(title == place and phrases for title, _, phrases in PLACES)
 
 
@@ -251,7 +266,11 @@ def same_rotation(sequence: str) -> str:
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether a derived formula's ``symbol`` can have a ``meaning``: ``dphi`` that of "rate of precession"."""
+    """Return whether ``symbol``, from a derived formula, can be the quantity that has this ``meaning`` in the context.
+
+    The patterns in QUANTITIES decide this: ``dphi`` can be a "rate of precession", A cannot. The result is True for a
+    quantity without a pattern.
+    """
     pattern = meaning.quantity.symbols
     if not pattern:
         return True
@@ -301,7 +320,7 @@ def guesses(context: Context, name: str, stated: str) -> list[str]:
 
 
 def is_place(words: str) -> bool:
-    """Return whether a phrase is the title of a place, such as "about an end"."""
+    """Return whether ``words`` are the title of a place in PLACES, a place of an axis in a body: "about an end"."""
     return any(words == title for title, _, _ in PLACES)
 
 

@@ -1,7 +1,7 @@
 """Assigning the letters of a claim to the angles of an Euler sequence, by words about them or by the usage of books.
 
-Words decide first: "yaw" is the angle about z, "precession angle" the first one. Letters that nothing states are tried
-in each order that books use for them; alpha, beta and gamma in every order.
+Words decide first: "yaw" is the angle about z, "precession angle" the first one. If no words say which angle a letter
+is, each order is tried that books use for the letters; for alpha, beta and gamma, every order.
 """
 
 import re
@@ -42,15 +42,20 @@ class Order:
 
 
 def has_order(sequence: str) -> bool:
-    """Return whether books agree on the first and third angle of a sequence: phi and psi in ZXZ; in ZYX they do not."""
+    """Return whether all books give the first and third angle of a sequence the same letters, in the same order.
+
+    They do so for sequences such as ZXZ, with the same first and last axis: phi is the first angle, psi the third. In
+    ZYX the usage differs. ``sequence`` may be empty; the result is then False.
+    """
     return bool(sequence) and sequence[0] == sequence[-1]
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi are the roll, pitch and yaw of an aircraft: angles about x, y and z.
+    """Return whether phi, theta and psi can be read as books on aircraft use them, for roll, pitch and yaw.
 
-    ``places`` maps letters to their places (0, 1, 2) in the sequence. The result is also True for a sequence such as
-    ZXZ, which has no angles about three different axes.
+    ``places`` maps letters to their places (0, 1, 2) in the sequence. In a sequence with three different axes, phi must
+    be the angle about x, theta about y and psi about z. A sequence such as ZXZ has no roll, pitch and yaw: the result
+    is then True, because the usage for aircraft restricts nothing.
     """
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(
@@ -119,9 +124,10 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the three letters of ``family`` in the order of the angles for which they stand if no words say otherwise.
+    """Return the three letters of ``family`` in the order in which books use them for the angles of ``sequence``.
 
-    This is ``family`` itself, such as (phi, theta, psi); but (psi, theta, phi) in ZYX, where psi is the yaw.
+    This is ``family`` itself, such as (phi, theta, psi); but (psi, theta, phi) in ZYX, where psi is the yaw. It holds
+    unless the words of the context say otherwise.
     """
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 

@@ -117,18 +117,22 @@ MOTIONS = ("rolls", "rolls down a slope", "rolls from a height")
 TOPS = ("symmetric top", "heavy top", "fast top", "of a top", "on a top", "steady precession", "sleeping top")
 
 BODIES: tuple[Kind, ...] = (
-    Kind("solid cylinder", ("cylinder", "homogeneous cylinder", "circular cylinder"),
+    Kind("solid cylinder", ("cylinder", "homogeneous cylinder", "circular cylinder", "right circular cylinder"),
          ("a cylinder", "a cylinder that rolls"), "cylinder"),
-    Kind("hollow cylinder", ("thick tube", "annular cylinder", "tube", "pipe"), ("a hollow cylinder",),
-         "hollow_cylinder", ("a thin tube", "cylinder")),
+    Kind("hollow cylinder", ("thick tube", "annular cylinder", "tube", "pipe", "thick-walled tube",
+                             "thick-walled cylinder", "thick-walled hollow cylinder", "thick-walled pipe",
+                             "thick cylindrical shell"),
+         ("a hollow cylinder",), "hollow_cylinder", ("a thin tube", "cylinder")),
     Kind("thin tube", ("cylindrical shell", "thin hollow cylinder", "thin-walled cylinder", "thin-walled tube",
                        "thin-walled hollow cylinder", "thin cylindrical shell"), ("a thin tube",), "cylinder"),
     Kind("annulus", ("annular disk",), ("a annulus",), "hollow_cylinder"),
     Kind("conical shell", ("hollow cone",), ("a conical shell",), "cone"),
-    Kind("thin rod", ("rod", "slender rod", "bar", "thin bar", "slender bar"), ("a rod",), "rod"),
+    Kind("thin rod", ("rod", "slender rod", "bar", "thin bar", "slender bar", "stick", "thin stick",
+                      "metre stick", "meter stick", "beam", "slender beam", "pole", "baton"), ("a rod",), "rod"),
     Kind("box", ("solid box", "block", "cuboid", "brick", "rectangular prism", "parallelepiped"), ("a box",), "box"),
     Kind("cube", ("solid cube",), ("a box",), "box"),
-    Kind("plate", ("thin plate", "rectangular plate", "thin rectangular plate"), ("a plate", "a flat body"), "plate"),
+    Kind("plate", ("thin plate", "rectangular plate", "thin rectangular plate", "rectangular lamina", "door",
+                   "gate", "trapdoor"), ("a plate", "a flat body"), "plate"),
     Kind("flat body", ("lamina", "plane body"), ("a flat body",)),
     Kind("solid sphere", ("sphere", "homogeneous sphere", "ball"), ("a sphere",), "sphere"),
     Kind("spherical shell", ("thin spherical shell", "hollow ball", "thin-walled sphere", "thin-walled hollow sphere",
@@ -136,13 +140,16 @@ BODIES: tuple[Kind, ...] = (
     Kind("hollow sphere", ("thick spherical shell",), ("a hollow sphere",), "hollow_sphere",
          ("a spherical shell", "spherical_shell")),
     Kind("hemisphere", ("solid hemisphere", "half ball"), ("a hemisphere",), "hemisphere"),
-    Kind("solid cone", ("cone", "homogeneous cone", "circular cone"), ("a cone",), "cone"),
+    Kind("solid cone", ("cone", "homogeneous cone", "circular cone", "right circular cone", "right cone"),
+         ("a cone",), "cone"),
     Kind("frustum", ("frustum of a cone", "truncated cone"), ("a frustum",), "frustum"),
-    Kind("ellipsoid", ("solid ellipsoid",), ("a ellipsoid",), "ellipsoid"),
+    Kind("ellipsoid", ("solid ellipsoid", "ellipsoid of revolution", "spheroid", "oblate spheroid",
+                       "prolate spheroid"), ("a ellipsoid",), "ellipsoid"),
     Kind("torus", ("solid torus", "ring with circular section", "doughnut"), ("a torus",), "torus"),
-    Kind("disk", ("thin disk", "homogeneous disk", "solid disk", "circular plate"),
+    Kind("disk", ("thin disk", "homogeneous disk", "solid disk", "circular plate", "circular disk",
+                  "thin circular disk", "circular lamina", "coin", "turntable"),
          ("a disk", "a cylinder that rolls"), "disk"),
-    Kind("ring", ("hoop", "thin ring", "thin hoop"), ("a ring",), "ring"),
+    Kind("ring", ("hoop", "thin ring", "thin hoop", "circular ring"), ("a ring",), "ring"),
     Kind("triangular plate", ("triangle", "thin triangle"), ("a triangular plate", "a flat body"), "triangular_plate"),
     Kind("triangular prism", (), ("a triangular prism",), "triangular_prism"),
     Kind("tetrahedron", (), ("a tetrahedron",), "tetrahedron"),
@@ -201,20 +208,36 @@ _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
-    r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]|in plane (of )?x,?( and)? y"
-    r"|free to rotate|hinged|pivoted)(?![\w-])"
+    r"|(of |with |and )?density (rho|ρ)|(with )?axis [xyz]"
+    r"|free to rotate|hinged|pivoted|rotating|rotates|spinning|spins|turning|turns|swinging|swings|oscillating"
+    r"|flywheel|pulley|platform|in (form|shape) of|shaped like|shaped as|modelled as|modeled as|treated as)(?![\w-])"
 )
 """Words about a body that change none of its formulas."""
 
-_ACROSS = re.compile(
-    r"(axis |line )?(that is )?(perpendicular|normal) to (it|plane|disk|ring|hoop|plate|rod|bar|length|surface|face)\b"
-)
-_HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
+_LINE = r"(?:(?:,? (?:and )?)?(?:axis |line )?(?:that is )?)?"
+_FACES = r"(?:it|plane|disk|ring|hoop|plate|lamina|surface|faces?|flat faces?|bases?|ends?|end faces?)\b"
+_OWN_AXIS = r"(?:axis of (?:symmetry|revolution)|(?:symmetry |own |figure |central |cylinder |longitudinal )?axis)\b"
+_ROUND = (*("cylinder", "hollow_cylinder", "cone", "frustum", "hemisphere", "torus"), "disk", "ring")
 _FLAT = ("disk", "ring", "annulus", "plate", "triangular plate", "flat body")
+ROD = "thin rod"
+_DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
+    ((ROD,), r"(?:perpendicular|normal) to (?:it|rod|bar|stick|length|axis)\b", "xy"),
+    (_ROUND, rf"(?:perpendicular|normal) to {_OWN_AXIS}", "xy"),
+    (_ROUND, rf"parallel to {_OWN_AXIS}", "z"),
+    ((*_FLAT, *_ROUND), rf"(?:perpendicular|normal) to (?:plane of )?{_FACES}", "z"),
+    ((*_FLAT, *_ROUND), rf"(?:parallel to|lying in|in) (?:plane of )?{_FACES}", "xy"),
+)
+"""Kinds of bodies, or shapes -> words for the direction of an axis through them -> the axes of that direction."""
+
+_PLANE = re.compile(
+    r",? ?\b(?:that )?(?:lying |lies |placed |is )?in (?:plane (?:of )?)?"
+    r"([xyz])(?:,? and |, ?|[- ])?([xyz])(?:[- ]?plane)?(?![\w-])"
+)
+"""Words for the plane of a flat body, such as "in the xy-plane"."""
+_HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
 _WITHOUT_AXIS = ("box", "plate", "ellipsoid", "triangular_plate", "triangular_prism", "tetrahedron")
 """Shapes whose formulas have no axis of symmetry."""
 
-ROD = "thin rod"
 _ALONG = re.compile(
     r",?(?<!about)(?<!about its)(?<!about the)\s(?:with |and |whose )?(?:its |the |an )?"
     r"(?:(?:symmetry )?axis(?: of symmetry)?(?: is)?(?: along| in)?|along)(?: the)? ([xyz])"
@@ -258,15 +281,40 @@ def body_of_words(words: str) -> Body | None:
     along = _ALONG.search(rest) if kind.shape and kind.shape not in _WITHOUT_AXIS else None
     rest = _ALONG.sub(" ", rest, count=1) if along else rest
     letters, factors, rest = _letters(kind, _HEIGHT_OF_FALL.sub(" ", words), rest)
-    axes = ""
-    if kind.title in (*_FLAT, ROD) and _ACROSS.search(rest):
-        axes, rest = "xy" if kind.title == ROD else "z", _ACROSS.sub(" ", rest, count=1)
+    rest, normal = _without_plane(kind, rest)
+    axes, rest = _direction(kind, rest)
     own = Body(kind, motion, letters).formulas
     place, rest = place_of_words(" ".join(rest.split()), own)
     if axes and re.fullmatch(r"(.* )?about", " ".join(rest.split())):
         rest = rest.strip().removesuffix("about")
-    symmetry_axis = along[1].replace("z", "") if along else ""
+    symmetry_axis = (along[1] if along else normal).replace("z", "")
     return Body(kind, motion, letters, place, unused_words(_HARMLESS.sub(" ", rest)), factors, axes, symmetry_axis)
+
+
+def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
+    """Return words without those for the plane of a flat body, and the axis normal to that plane, "z" for "xy".
+
+    For a plate, whose sides are along x and y in the derived formulas, only this plane is understood. The second result
+    is empty without such words.
+    """
+    match = _PLANE.search(words) if kind.title in _FLAT else None
+    normal = "xyz".replace(match[1], "").replace(match[2], "") if match else ""
+    if match is None or len(normal) > 1 or (normal != "z" and kind.shape not in _ROUND):
+        return words, ""
+    return " ".join(_PLANE.sub(" ", words, count=1).split()), normal
+
+
+def _direction(kind: Kind, words: str) -> tuple[str, str]:
+    """Return the axes of a body that have the direction in words, "xy" for "parallel to its base", and the other words.
+
+    The first result is empty if the words state no direction.
+    """
+    for kinds, pattern, axes in _DIRECTIONS:
+        if kind.title in kinds or kind.shape in kinds:
+            rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)
+            if rest != words:
+                return axes, rest
+    return "", words
 
 
 def _scaled(term: str) -> tuple[str, Fraction]:

@@ -95,7 +95,10 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether the words are about ``name``, or about the vector or matrix of which it is an entry."""
+        """Return whether this is the meaning of ``name``, or of the vector or matrix that has ``name`` as an entry.
+
+        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12.
+        """
         stem = re.sub(r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
@@ -123,7 +126,7 @@ class Context:
         return bool(self.meanings or self.body or self.frame or self.sequence)
 
     def meaning_of(self, name: str) -> Meaning | None:
-        """Return what the words say about a name; None if they say nothing."""
+        """Return the meaning that the user's words give to a name, or None if they do not mention it."""
         exact = (meaning for meaning in self.meanings if name in meaning.names)
         return next(exact, None) or next((meaning for meaning in self.meanings if meaning.is_of(name)), None)
 
@@ -158,7 +161,7 @@ class Context:
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
-        """Raise InputError if the context describes a name that a text does not have."""
+        """Raise InputError if the context describes a name that is not in ``names``, the names of the claim."""
         for meaning in self.meanings:
             if not any(meaning.is_of(name) for name in names):
                 raise InputError(
@@ -317,7 +320,9 @@ def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator
         raise InputError(f"{prefix}expected a name before '=', got {part[:40]!r}") from None
     name = _name(tree)
     if name is None:
-        raise InputError(f"{prefix}expected a name before '=', got the formula {part[:40]!r}; write it with --given")
+        raise InputError(
+            f"{prefix}expected a name before '=', got the formula {part[:40]!r}; state the equation with --given"
+        )
     yield f"{'d' * primes}{name}" if is_rate else name + "_prime" * primes
     if name.endswith("_dot"):
         yield f"d{name.removesuffix('_dot')}"
@@ -353,7 +358,10 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that some words state, "body", "space" or an empty text, and the words without those for it."""
+    """Return the frame that some words state, "body" or "space", and the words that are left without the phrase for it.
+
+    "velocity in the body frame" gives "body" and "velocity". Without such a phrase the frame is an empty text.
+    """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
             return frame, words.replace(match[0], " ", 1)
@@ -365,9 +373,10 @@ _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the quantity that some words state, such as a torque, and the phrase in ``plain`` that states it.
+    """Return the Quantity that some words state, such as the torque, and the phrase in ``plain`` that states it.
 
-    ``plain`` are the words in lower case and one spelling; ``words`` are those of the user, for error messages.
+    ``words`` are the words as the user wrote them, for error messages, which begin with ``prefix``. ``plain`` are the
+    same words in lower case, with the spelling that :func:`plain_words` gives them.
     """
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
@@ -483,7 +492,7 @@ def _check_consistency(context: Context, prefix: str) -> None:
         if meaning.quantity.sign not in ("", context.sign_of_products):
             raise InputError(
                 f"{prefix}where: expected all products of inertia with the same sign convention, got "
-                f"{meaning.written[0]} as the {meaning.quantity.title} besides others with the "
+                f"{meaning.written[0]} as the {meaning.quantity.title}, and another product of inertia with the "
                 f"{context.sign_of_products} sign"
             )
         _check_unit(meaning, prefix)
@@ -500,12 +509,15 @@ def _check_consistency(context: Context, prefix: str) -> None:
 
 
 def _check_unit(meaning: Meaning, prefix: str) -> None:
-    """Raise InputError if the words give a name another unit than it has for most readers: "omega = mass"."""
+    """Raise InputError if the meaning of a name has another unit than the name usually has, as in "omega = mass".
+
+    The usual unit is the one in the convention of symrot: rad/s for omega. ``prefix`` begins the message.
+    """
     for name in meaning.names:
         usual = conventional_unit(name) if len(name) > 1 else None
         own = meaning.quantity.unit
         if usual and own and read_unit(own) != read_unit(usual) and "_prime" not in name:
             raise InputError(
-                f"{prefix}where: expected a quantity in {usual}, as the name {meaning.written[0]} says, "
-                f"got {meaning.quantity.title!r}, which is in {own}"
+                f"{prefix}where: expected a quantity with the unit {usual}, which {meaning.written[0]} usually has, "
+                f"got {meaning.quantity.title!r}, which has the unit {own}"
             )

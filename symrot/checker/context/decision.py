@@ -1,9 +1,12 @@
 """Verdicts in a context: once the meanings of names are stated, a claim that gives a formula for a quantity is decided.
 
-A known formula is meant if the context, or the name of the quantity, states every word of the formula's name. The claim
-is true if it is equal to such a formula. It is false if it differs from all of them, for every assignment of its
-letters to their symbols. If some words are not stated, the verdict stays what it is without a context, and a note names
-these words.
+The name of a known formula, such as "moment of inertia of a rod about an end", is a list of words. The claim means this
+formula if each of these words follows from the context or from the name of the claim's quantity, as "moment of inertia"
+follows from I.
+
+The claim is true if it is equal to a formula that it means. It is false if it differs from all of them, however its
+letters are assigned to the letters of those formulas. If some words follow from nothing, the verdict stays what it is
+without a context, and a note names these words.
 """
 
 import re
@@ -136,8 +139,11 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim in its context: "true" or "false" only if all words of the context are used.
 
-    ``verdict`` is the verdict so far. With words that symrot does not understand, the result is "definition", which
-    leaves the claim open.
+    A word is used if symrot understands it, or if it occurs in the names of the known formulas of the verdict or in the
+    claim. With unused words, "true" becomes "recognised", and in place of "false" the verdict without the context is
+    returned; a note lists the words. If symrot does not understand words about the body or the axis, the verdict is
+    "definition": the claim is then taken as a definition, neither true nor false. ``verdict`` is the verdict without
+    the context.
     """
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
@@ -194,9 +200,11 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if the words "about a tangent" were read as an unusual axis.
+    """Replace "true" by "recognised" if the claim is true for the less usual of the two tangents of a disk or ring.
 
-    This is the axis through the rim of a disk or ring that is normal to its plane; a tangent may also lie in the plane.
+    A tangent may lie in the plane of the body, or be normal to it at the rim. The words "about a tangent" leave this
+    open. If the formula is the one for the normal axis, the verdict is no longer "true", and a note says what was
+    guessed.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
@@ -297,10 +305,11 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict "recognised" with a note: it lists the words of the formula's name that nothing states.
+    """Return ``verdict`` with its formulas sorted by how much had to be guessed, and a note on what was guessed.
 
-    Of several recognised formulas, the one with the fewest such words counts. ``stated`` are the words that the name of
-    the claim's quantity implies.
+    Guessed are the words in the name of a known formula that follow neither from the context nor from ``stated``. The
+    note lists those of the formula with the fewest. ``stated`` are the words that the name of the claim's quantity
+    implies, such as "moment of inertia z axis" for I_zz.
     """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
@@ -331,7 +340,10 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" with the counterexample of ``decision``, where claim and meant formula differ."""
+    """Return the verdict "false" on a claim, with the counterexample of ``decision``.
+
+    ``decision`` compares the claim with the known formula that the context means; at the counterexample they differ.
+    """
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
 
@@ -355,8 +367,9 @@ def _by_meant_formulas(
 ) -> Verdict | None:
     """Return the verdict by comparing a claim with all known formulas that its context can mean.
 
-    Return None if the claim stays open, for example because one comparison is undecided. ``quantity`` is the name for
-    which the claim gives a formula, and ``stated`` are the words that this name implies.
+    Return None if this decides nothing, for example because there is no such formula or one comparison is undecided.
+    ``quantity`` is the name for which the claim gives a formula, and ``stated`` are the words that this name implies,
+    such as "moment of inertia z axis" for I_zz.
     """
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
@@ -397,10 +410,12 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim lacks a term or factor of the known formula that its context states.
+    """Return the verdict "doubtful" if a claim is the known formula of its context without a term or a factor.
 
-    Return None otherwise. ``quantity`` is the name for which the claim gives a formula, and ``stated`` are the words
-    that this name implies.
+    This is the known formula whose name follows word by word from the context and from ``stated``; the term or factor
+    that the claim lacks has letters which the claim does not have. Otherwise return None. ``quantity`` is the name for
+    which the claim gives a formula, and ``stated`` are the words that this name implies, such as "moment of inertia z
+    axis" for I_zz.
     """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
@@ -482,10 +497,11 @@ def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, .
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" if one corrected fault makes a claim equal to a known formula; None otherwise.
+    """Return the verdict "doubtful" if a claim becomes equal to a known formula once one fault is corrected, or None.
 
-    It is used if nothing states the place of the axis, so that none of the formulas in ``decisions`` is certainly
-    meant.
+    ``decisions`` has each known formula that the claim may mean, with the decision that the claim differs from it. This
+    function is for claims that do not say through which place of the body the axis goes: then it is not certain which
+    of the formulas is meant, and the claim cannot be called false.
     """
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
@@ -567,10 +583,11 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return ``diff(phi(t), t)`` for ``dphi``, and so for each angle rate to which ``mapping`` assigns no letter.
+    """Return a map from each symbol of an angle rate that ``mapping`` leaves out, such as dphi, to ``diff(phi(t), t)``.
 
-    With these, a known formula can be compared with a claim that has derivatives. The result is empty if no member of
-    ``own``, the atoms of the claim, is a derivative.
+    ``mapping`` maps the symbols of a known formula to the letters of the claim. With the result substituted too, the
+    known formula can be compared with a claim that has derivatives. The result is empty if ``own``, the atoms of the
+    claim, contains no derivative.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}

@@ -21,8 +21,10 @@ def by_exchanged_letters(
 ) -> Verdict:
     """Return "doubtful" in place of "definition" if a claim's formula is right once two of its letters are exchanged.
 
-    ``judge`` returns the verdict on a claim, here on the one with exchanged letters. Only two letters with a meaning in
-    the context and the same unit are exchanged: other letters may mean anything.
+    ``verdict`` is the verdict on the claim so far; "definition" means that the claim was neither proven nor refuted. In
+    all other cases ``verdict`` itself is returned. ``judge`` returns the verdict on a claim, here on the one with
+    exchanged letters. Only two letters with a meaning in the context and the same unit are exchanged: other letters may
+    mean anything.
     """
     if verdict.verdict != "definition" or not claim.context.meanings or claim.relation is None:
         return verdict

@@ -1,4 +1,7 @@
-"""Formulas that lack a term or a factor with letters of its own: the context of a claim says which formula is meant."""
+"""Claims whose formula lacks a term or a factor of the formula that the context of the claim states.
+
+The lacking term or factor has letters that the rest of the formula does not have, as k*x in ``m*g*l + k*x``.
+"""
 
 import re
 from collections.abc import Callable, Iterator, Mapping

@@ -1,6 +1,7 @@
 """The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-For each quantity, words in the names of known formulas, and a pattern of symbols, tell which formulas are for it.
+Each quantity also tells which known formulas are for it: by phrases in the names of the formulas, and by a pattern for
+the symbols that stand for the quantity in them, such as E_k for the kinetic energy.
 """
 
 import re
@@ -163,21 +164,24 @@ QUANTITIES: tuple[Quantity, ...] = (
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
 """Words that name more than one quantity -> what to write instead."""
 
-CENTRE, CORNER, RIM, SURFACE = (
-    "about the centre of mass", "about a corner", "about a point of the rim", "about a point of the surface",
+CENTRE, END, CORNER, RIM, SURFACE = (
+    "about the centre of mass", "about an end", "about a corner", "about a point of the rim",
+    "about a point of the surface",
 )  # fmt: skip
 PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    (CENTRE, ("centre", "centre of mass", "centroid", "central axis"),
+    (CENTRE, ("centre", "centre of mass", "centroid", "central axis", "centre of gravity", "geometric centre",
+              "middle", "midpoint", "middle point", "cm", "com", "c.m."),
      ("about its centre of mass", "about their centre of mass", "of given density", "radius of gyration of a")),
-    ("about an end", ("end", "one end", "centre of an end", "centre of one end"),
+    (END, ("end", "ends", "end point", "endpoint", "centre of an end", "centre of one end"),
      ("about an end", "about the centre of an end")),
     ("about the tip", ("tip", "apex", "vertex"), ("about its tip",)),
     ("about the base", ("base", "centre of the base", "centre of the flat face", "bottom", "centre of the bottom"),
      ("about the centre of the base", "about the centre of the flat face", "about the centre of the bottom")),
     (CORNER, ("corner", "first corner", "right corner"),
      ("about a corner", "about the first corner", "about the corner at (0, 0)")),
-    (RIM, ("rim", "point of its rim", "point of the rim"), ("about a point of its rim",)),
-    (SURFACE, ("point of its surface", "point of the surface"),
+    (RIM, ("rim", *(f"point {word} {place}" for word in ("of", "on") for place in ("rim", "edge", "circumference"))),
+     ("about a point of its rim",)),
+    (SURFACE, ("point of surface", "point on surface"),
      ("about a point of its surface",)),
     ("about the middle of a side", ("middle of a side",), ("about the middle of a side",)),
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
@@ -197,7 +201,8 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
     ),
     "about its axis": (
         ("axis", "symmetry axis", "axis of symmetry", "own axis", "longitudinal axis", "figure axis", "geometric axis",
-         "cylinder axis", "polar axis", "z axis", "z-axis"),
+         "cylinder axis", "polar axis", "z axis", "z-axis", "central axis", "axis of revolution",
+         "axle"),
         {**dict.fromkeys(ROUND, (CENTRE, "z")), **dict.fromkeys(BALLS, (CENTRE, "xyz")),
          "a conical shell": ("about the tip", "z")},
     ),
@@ -209,8 +214,13 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("tangent", "tangent line", "tangential axis", "axis tangent to it"),
         {"a disk": (RIM, "yz"), "a ring": (RIM, "yz"), "a sphere": (SURFACE, "xy")},
     ),
+    "about the centre of an end face": (
+        ("base", "centre of base", "centre of one base", "centre of bottom", "centre of one face",
+         "centre of end face"),
+        {"a cylinder": (END, "xyz")},
+    ),
     "about an edge": (
-        ("edge", "one edge", "side", "one side", "one of edges", "one of sides"),
+        ("edge", "side", "edges", "sides", "hinge", "hinges"),
         {"a box": (CORNER, "xyz"), "a plate": (CORNER, "xy")},
     ),
     "about its base": (
@@ -234,6 +244,7 @@ _SPELLINGS = (
     (r"\b(rate|quaternion|parameter|torque|rotation|couple|angle)s\b", r"\1"), (r"\baxes\b", "axis"),
     (r"\b(with|in|by) (the )?(euler )?angles? phi,? theta,?( and)? psi\b|\bat (the )?(finite )?angle theta\b", " "),
     (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
+    (r"\b(with )?\s*(centred|centre) +(at|on|in) +(origin|o)\b", "about centre"),
     (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
 )  # fmt: skip
 
@@ -256,10 +267,11 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the place of an axis in words, such as "about an end", or an empty text, and the words without it.
+    """Return the place of an axis in words, such as "about an end", and the words without it.
 
-    ``formulas`` are the phrases for the body in the names of formulas. A line such as "about a diameter" counts only if
-    the body has it.
+    The place is an empty text if the words name none. Lines of a body, such as "about a diameter", are places too. If
+    ``formulas`` is empty, all lines are tried. Otherwise only the lines of certain bodies are: those for which
+    ``formulas`` has the phrase that stands for the body in names of formulas, such as "a disk".
 
     Examples
     --------
@@ -272,7 +284,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
         (match, title)
         for title, phrases in (*lines, *titled)
         for phrase in phrases
-        if (match := re.search(rf"(through|about|hung at|hung from|at) {plain_words(phrase)}{_END_OF_PLACE}", words))
+        if (match := re.search(rf"{_BEFORE_PLACE} {plain_words(phrase)}{_END_OF_PLACE}", words))
     ]
     if not places:
         return "", words
@@ -283,13 +295,17 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
     return title, " ".join(rest.split())
 
 
+_BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
+"""The words before a place; "one axis" is the fixed axis of a body, and not its own axis."""
+
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 
 
 def unused_words(words: str) -> str:
-    """Return the words that carry meaning in a text that is left over, without articles, prepositions and the like.
+    """Return the words with a meaning in ``words``, without articles, prepositions and the like.
 
-    If there are any, symrot does not understand all of what the user said.
+    ``words`` are what remains of the user's words once symrot has used the rest. If the result is not empty, symrot
+    does not understand all that the user wrote.
 
     Examples
     --------

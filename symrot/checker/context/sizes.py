@@ -1,7 +1,7 @@
-"""Moments of inertia in other dimensions: half the sides of a box, the axes of an ellipsoid, or a diameter.
+"""Moments of inertia in terms of other lengths: half the sides of a box, the axes of an ellipsoid, or a diameter.
 
 symrot writes the moments of a box with its sides, those of an ellipsoid with its semi-axes, those of round bodies with
-their radii. Authors also use other dimensions. A formula that is exact for these is recognised, and a note says so.
+their radii. Authors also use other lengths. A formula that is exact for these is recognised, and a note says so.
 """
 
 from collections.abc import Callable

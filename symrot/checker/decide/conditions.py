@@ -60,9 +60,10 @@ def requirements(
 
 
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
-    """Return the irreducible factors that all residuals have in common: where one of them is zero, the claim is true.
+    """Return the irreducible factors that divide the left minus the right side of every entry, given by ``numerators``.
 
-    The list is empty if the residuals, whose ``numerators`` are given, are too large to be factored.
+    Where one of these factors is zero, all entries agree and the claim is true. The list is empty if no factor is
+    common, or if the polynomials are too large to be factored.
     """
     smallest = min(numerators, key=len)
     if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
@@ -99,7 +100,8 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
     """Return the condition ``factor == 0`` if textbooks state conditions of its kind, else None.
 
-    The kinds are: a unit norm, equal moments of inertia or a sum of two equal to the third, no product of inertia.
+    There are four kinds: a unit norm (``q0**2 + q1**2 == 1``), two equal moments of inertia (``A == B``), a moment that
+    is the sum of two others (``A + B == C``), and a product of inertia that is zero (``I_xy == 0``).
     """
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
@@ -147,9 +149,10 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return, in a list, the condition that all products of inertia are zero, if it makes the claim true; else [].
+    """Return [the condition that all products of inertia are zero] if it makes the claim true, else [].
 
-    A condition counts only if one side of each entry has none of the products: its author left them out.
+    It is returned only if in every pair (left, right) of ``sides`` one side contains no product of inertia: a book that
+    assumes principal axes leaves them out. ``numerators`` are those of left minus right.
     """
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
@@ -197,7 +200,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the number ``place``.
+    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the index ``place``.
 
     a does not contain the generator.
     """

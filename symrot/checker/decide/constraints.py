@@ -1,9 +1,10 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
 Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the equation ``root^n = base``
-of each root. Divisors do not vanish. Symbols and even roots have signs. A generator is ``free`` if these polynomials
-say everything that is known of its value; a function of a symbol is not free, nor is an angle that depends on a symbol.
-Constraints on generators that are not free are not used.
+of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if it
+may have every value that these conditions allow. Two kinds are not free: a function of a symbol, such as tanh(x), and
+the sine and cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not
+used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,16 +35,17 @@ class Constraints:
         A ring over the rationals with the generators of the claim's ring.
     zeros, nonzero : tuple of PolyElement
     positive, nonnegative, negative, whole : frozenset of int
-        Numbers of the generators that are assumed to be > 0, >= 0, < 0, or integers.
+        Indices of the generators that are assumed to be > 0, >= 0, < 0, or integers.
     products : tuple of PolyElement
         Further polynomials that are >= 0: formulas under even roots of the text, and ``r*b`` for each root
-        ``r = b*sqrt(a/b)`` of a quotient, which has the sign of its divisor b.
+        ``r = b*sqrt(a/b)`` of a quotient, since r has the sign of b.
     free : frozenset of int
-        Generators that may have any value that these polynomials and signs allow.
+        Indices of generators that may have every value which these polynomials and signs allow. The other generators
+        depend on symbols in a way that polynomials cannot express, as tanh(x) depends on x.
     unconstrained : tuple of PolyElement
-        Divisors with a generator that is not free. The drawing of points ignores them.
+        Divisors with a generator that is not free. The random search for points ignores them.
     complete : bool
-        False if a hypothesis involves a generator that is not free, and is therefore missing in ``zeros``.
+        False if a hypothesis contains a generator that is not free: then ``zeros`` lacks this hypothesis.
     real : bool
         False if the imaginary unit occurs.
     """
@@ -68,7 +70,7 @@ class Constraints:
 
 
 def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
-    """Return the numbers of the generators (unknowns of the ring) that occur in polynomials."""
+    """Return the indices of the generators (unknowns of the ring) that occur in polynomials."""
     return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
 
 
@@ -136,7 +138,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the numbers of the sine and cosine of each angle that may have any value, independent of all other symbols.
+    """Yield the indices of the ring's generators sin(u) and cos(u), for each angle u that is independent of all else.
 
     Such an angle is proportional to a symbol, or a function of time, that occurs nowhere else. Its time derivatives may
     occur, since at one instant they are independent of the value of the function.

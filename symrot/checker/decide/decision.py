@@ -145,9 +145,9 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return a conditional decision without divisors in its conditions at whose zeros the equation is true.
+    """Return a conditional decision whose conditions do not divide by y, if the equation is true for ``y = 0`` too.
 
-    The proof of ``sqrt(x**2*y**2) == x*y`` divides by ``abs(y)``, but the equation is true for ``y = 0`` too.
+    The proof of ``sqrt(x**2*y**2) == x*y`` gives the condition ``x/abs(y) >= 0``; it becomes ``x >= 0``.
     """
     return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
 
@@ -234,7 +234,7 @@ class _ClaimCase(Case):
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Numbers of those factors in the ring which, by a hypothesis, are not zero.
+        Indices, in the ring's list of divisors, of those that are nonzero by a hypothesis.
     numerators : list of PolyElement
         The numerators of left - right for the unproven entries, reduced by the hypotheses.
     branches : list of Requirement or None
@@ -256,10 +256,11 @@ class _ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether the stages so far leave the claim open.
+        """Whether the search for a counterexample must go on.
 
-        They do if no counterexample is known, and either the claim has hypotheses, or no condition on the signs of its
-        roots is known that makes it true.
+        It is False if a counterexample is known. It is also False if a claim without hypotheses is known to be true
+        under conditions on the signs of its roots. Under hypotheses the search goes on, since these conditions are
+        derived without the hypotheses.
         """
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -324,7 +325,8 @@ class _ClaimCase(Case):
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
     """Read the formulas that are nonzero by a hypothesis into the ring, so that proofs may divide by them.
 
-    This comes before any other divisor is read: ``case.nonzero_factors`` then has the numbers of just these factors.
+    This is the first stage, so the ring has no other divisors yet: ``case.nonzero_factors`` becomes the set of their
+    indices in the ring's list of divisors.
     """
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
@@ -380,7 +382,10 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Search all points that can be drawn and obey the hypotheses for a counterexample; store it in ``case``."""
+    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``.
+
+    It comes after :func:`nearby_witness`, which tries simple points.
+    """
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
@@ -436,11 +441,11 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Turn a decision "true" into "conditional" if the sides differ at a point that its proof excludes.
+    """Turn "true" into "conditional" if the sides differ at a point on the branch cut of an atan2.
 
-    If no such point is known, the decision is returned unchanged. All functions but atan2 are continuous where they are
-    defined: sides that are equal where no divisor of the proof vanishes are equal in between too. atan2 jumps where its
-    first argument is zero and its second argument is negative.
+    The proof may divide by a formula that is zero there. For continuous functions that does no harm: sides that are
+    equal on both sides of such a point are equal at it too. But atan2 jumps where its first argument is zero and its
+    second one negative. If no such point is known, the decision is returned unchanged.
     """
     symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
     cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
@@ -547,10 +552,10 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return those formulas that must be nonzero, by their texts, that no other one implies.
+    """Return ``nonzero`` (text -> formula that must not be zero) without the formulas that need not be stated.
 
-    Left out are formulas that never vanish, as ``sin(a)**2 + cos(a)**2``, and powers of others, as
-    ``sin(a)**2*cos(b)**2 + cos(a)**2*cos(b)**2`` if cos(b) is there.
+    These are formulas that never vanish, as ``sin(a)**2 + cos(a)**2``, and powers of others, as ``sin(a)**2*cos(b)**2 +
+    cos(a)**2*cos(b)**2`` if cos(b) is there.
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -583,10 +588,11 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return the conditions on signs that make a claim true, and the rings of formulas in which this is proven.
+    """Return (conditions, rings): conditions on signs that make a claim true, and the rings in which proofs computed.
 
-    ``numerators`` are those of the residuals (left - right). The list is empty if no condition is needed; it is None if
-    no such condition is known.
+    ``numerators`` are those of left minus right, as polynomials of ``ring``. The conditions are [] if the claim is true
+    without any, and None if no such conditions are known. A proof may need a larger ring than ``ring``, for example one
+    that contains the angle of an arcsine; its divisors become conditions too.
     """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None
@@ -621,4 +627,7 @@ def _obstacle(ring: FormulaRing) -> str:
         )
     if ring.hypotheses:
         return f"none of {ATTEMPTS} random points obeys the hypotheses and shows a difference, and no proof was found"
-    return "no rational point was found at which the sides differ, since an angle depends on other symbols"
+    return (
+        "no proof was found, and no rational point where the sides differ: an angle contains symbols that occur "
+        "elsewhere too, so that its sine and cosine cannot be chosen freely"
+    )

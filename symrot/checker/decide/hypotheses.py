@@ -146,14 +146,21 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` are proven to exist, near every point, without a search.
+        """Return whether points that meet all ``needs`` are proven to exist in every neighbourhood, without a search.
 
-        They are if each need says that a divisor is nonzero, as ``x != 0``, and :func:`is_dense` is true of the ring.
+        That is so if each need says that a divisor is nonzero, as ``x != 0``, and if :func:`is_dense` shows that the
+        points where no divisor vanishes are dense.
         """
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
-        """Return whether a condition without symbols, such as ``2 - 1 > 0``, holds; raise InputError if it is false."""
+        """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven.
+
+        Raises
+        ------
+        InputError
+            If it is proven to be false. The result False means that neither could be proven.
+        """
         interval = enclosure(need.formula)
         if interval is None:
             return False
@@ -164,7 +171,11 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether one of the drawn points obeys the hypotheses exactly and meets the conditions ``needs``."""
+        """Return whether a random point was found that obeys the hypotheses exactly and meets the conditions ``needs``.
+
+        At most ``attempts`` points are tried. The result is False, too, if a hypothesis is not among the constraints
+        that these points obey.
+        """
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]
@@ -264,8 +275,8 @@ class Hypotheses:
     ) -> Counterexample | None:
         """Return a counterexample, or None: an exact point that obeys the hypotheses and where left and right differ.
 
-        ``entry`` is (row, column) of the compared matrix entry, for the result, and ``attempts`` the number of random
-        drawings.
+        At most ``attempts`` random points are tried. ``entry`` is (row, column) if the sides are an entry of a matrix;
+        it is copied into the counterexample.
         """
         if not self.present or not self.constraints.real or not self.constraints.complete:
             return None
@@ -349,7 +360,10 @@ class Hypotheses:
         return None
 
     def _other_divisors_nonzero(self, point: RealPoint) -> bool:
-        """Return whether divisors such as tanh(x), which the drawing of points ignores, are nonzero at a point."""
+        """Return whether the divisors in ``constraints.unconstrained``, such as tanh(x), are nonzero at a point.
+
+        The random search solves polynomial equations only, so that it does not regard these divisors.
+        """
         factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
         values = self._values_for(factors, point)
         enclosures = [enclosure(factor, values) for factor in factors]

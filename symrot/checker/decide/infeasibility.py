@@ -3,8 +3,9 @@
 A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
 basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
 form, by the ranges of its unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding
-``z f = 1`` makes all cases impossible (Rabinowitsch). This covers more than linear combinations of the constraints: a
-power of f may be one, or f may vanish for real numbers only, as x does if x^2 + y^2 = 0, or for positive symbols only.
+``z f = 1`` makes all cases impossible (Rabinowitsch). This proves more than linear combinations of the constraints do:
+f = x vanishes if the constraint is x^2 = 0, where only a power of f is such a combination; if it is x^2 + y^2 = 0,
+where x must vanish for real x and y only; or if it is x*y = 0 with a positive symbol y.
 """
 
 from collections.abc import Sequence
@@ -206,7 +207,11 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Write a quadratic polynomial as a sum of d*l^2 by completing squares; return the pairs (d, l), or []."""
+        """Return pairs (d, l) for which the quadratic polynomial ``rest`` is the sum of d*l^2, with d > 0 and linear l.
+
+        Completing the squares gives x^2 + 2*x*y + 3*y^2 = 1*(x + y)^2 + 2*y^2. The list is empty if ``rest`` has no
+        such form.
+        """
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -239,10 +244,10 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the bounds (low, high) of unknowns, by the numbers of the unknowns in the ring.
+        """Return the bounds (low, high) of unknowns, by the indices of the unknowns in the ring.
 
-        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1. ``zeros``
-        are polynomials that vanish besides the constraints.
+        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1. The
+        equations are those of the constraints, and ``poly = 0`` for each polynomial in ``zeros``.
         """
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):

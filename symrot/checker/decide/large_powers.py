@@ -97,8 +97,9 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
     """Estimate the degree of the sine of an angle, in the sines and cosines of its symbols: 5 for 3*x + y/2.
 
-    Each coefficient p/q adds p times q: 3 for 3*x, and 2 for y/2. If ``bases`` has a value for an atom, such as 1/2
-    for y, the coefficient adds the number of times that it contains this value: 1 for y/2.
+    Each term (p/q)*x of the angle adds p*q: 3 for 3*x, and 2 for y/2. If the ring already expresses sin(y) by the sine
+    of a smaller angle, ``bases`` has the ratio (1/2 for y/2); then the term adds its coefficient divided by this ratio:
+    1.
     """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:

@@ -53,9 +53,11 @@ def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts, such as ``"x >= 0"``: first its requirements, then the other ones.
+    """Return the conditions of a decision as texts, such as ``"x >= 0"``.
 
-    If there is only one requirement, conditions that follow from it are left out.
+    First come the texts of the :class:`Requirement` objects, which make the claim true, then those of the other
+    conditions, which say where the sides are defined. If there is exactly one requirement, other conditions that follow
+    from it are left out.
     """
     conditions = list(conditions)
     required = [each for each in conditions if isinstance(each, Requirement)]
@@ -145,7 +147,11 @@ def _leaves(formula: Expr) -> list[Expr]:
 
 
 def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
-    """Factor a formula; return (sign, factor -> power) without positive numbers, or None if that fails."""
+    """Factor a formula; return (sign, factor -> power), where sign is 1 or -1, and positive numbers are dropped.
+
+    ``_factors(-4*x**2/y)`` is (-1, {x: 2, y: -1}). None is returned if SymPy cannot factor the formula, or if the sign
+    of a number in it is not known.
+    """
     above, below = sympy.fraction(sympy.together(formula))
     sign, powers = 1, dict[Expr, int]()
     for part, direction in ((above, 1), (below, -1)):
@@ -252,7 +258,11 @@ class _Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of the quantity minus ``root`` in its range (0 if unknown), and whether it may be zero."""
+        """Return (sign, may_vanish) of q - root for a quantity q in this range.
+
+        ``sign`` is 1, -1, or 0 if it is not known; ``may_vanish`` tells whether q may equal ``root``. For the range q
+        >= 2 and the root 2, the result is (1, True).
+        """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
             if distance is not None and distance.is_nonnegative:
@@ -268,8 +278,9 @@ class _Conditions:
     ----------
     ranges : mapping
         Quantity -> its bounds.
-    products : mapping
-        Product of at least two factors -> its sign, ``"> 0"`` or ``">= 0"``.
+    products : list of (mapping, int, str)
+        Conditions on products of at least two factors: (factor -> power, direction, sign), which say that direction (1
+        or -1) times the product has the sign ``"> 0"`` or ``">= 0"``.
     nonzero : mapping
         Formulas that must not be zero, in the order in which they came.
     whole : list of (Expr, str)
@@ -283,7 +294,11 @@ class _Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "_Conditions":
-        """Return the conditions ``signs`` in their simplest form; without ``divided``, divisors need not be nonzero."""
+        """Return the conditions ``signs`` in their simplest form.
+
+        If ``divided``, ``x/y >= 0`` also gives ``y != 0``. A caller that states the nonzero divisors itself passes
+        False.
+        """
         conditions = cls()
         for formula, sign in signs:
             conditions._add(_with_plain_functions(formula), sign, divided)
@@ -329,7 +344,11 @@ class _Conditions:
             self.nonzero[_bound(factor).formula] = None
 
     def _settle(self) -> None:
-        """Simplify products repeatedly: if only one factor has an unknown sign, the product becomes a bound on it."""
+        """Simplify each condition on a product of factors until none becomes simpler.
+
+        Factors of known sign are dropped. If one factor remains, the condition becomes a bound on it, in the ranges:
+        ``x*(y - 1) >= 0`` with x > 0 gives y >= 1.
+        """
         changed = True
         while changed:
             changed = False
@@ -351,9 +370,10 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a product without its factors of known sign; None if it has become a bound, or if it always holds.
+        """Return the condition ``entry`` without the factors of known sign, or None if it need not be stored any more.
 
-        ``entry`` is (factors, direction, sign): the product of the factors, times a direction of 1 or -1, has the sign.
+        ``entry`` is (factors, direction, sign), such as ({x: 1, y: 1}, -1, ">= 0") for ``-x*y >= 0``. It need not be
+        stored if it holds everywhere, or if it restricts one quantity to a range: the range is then narrowed instead.
         """
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
@@ -390,9 +410,11 @@ class _Conditions:
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
 
     def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
-        """Turn a product ``(q - a)*(b - q)`` into the range from a to b of q; return whether it has this form.
+        """Narrow the range of q to the points from a to b if a condition is ``(q - a)*(b - q) >= 0`` or ``> 0``.
 
-        ``bounds`` are its factors; the product, times ``direction``, has the ``sign``.
+        ``bounds`` has, for each factor, its form slope*(q - root); ``direction`` (1 or -1) times the product of the
+        factors is ``>= 0`` or ``> 0`` according to ``sign``. If the condition has another form, False is returned and
+        nothing changes.
         """
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
@@ -403,9 +425,10 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether ranges imply that a linear formula is not zero, so that ``formula != 0`` need not be printed.
+        """Return whether the ranges imply ``formula != 0`` for a linear formula, so that it need not be printed.
 
-        Where the zero is an end of a range, the end is removed first: with x != 0, ``x >= 0`` becomes ``x > 0``.
+        If the zero is an end of a stored range, this end is removed from the range, and the result is True: with x !=
+        0, ``x >= 0`` becomes ``x > 0``.
         """
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
@@ -425,7 +448,7 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether a condition on a product, of ``factors`` times ``direction``, excludes ``bound.root``.
+        """Return whether the condition ``direction * (product of the factors) >= 0`` excludes the point ``bound.root``.
 
         ``(x - 1)*(x + 1) >= 0`` excludes x = 0, since it excludes all points between -1 and 1.
         """
@@ -436,10 +459,11 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether other conditions imply the range ``own`` of ``quantity``, cos(u); then the text leaves it out.
+        """Return whether the range ``own`` of ``quantity`` need not be printed, since it holds anyway.
 
-        A cosine is between -1 and 1. If cos(u/2) is nonzero, it is not -1; if sin(u/2) is nonzero, it is not 1. For
-        other quantities the result is False.
+        That is so for -1 <= cos(u) <= 1. The range cos(u) > -1 need not be printed if the stored conditions say that
+        cos(u/2) is nonzero, nor cos(u) < 1 if they say that sin(u/2) is. For quantities other than cosines the result
+        is False.
         """
         if not isinstance(quantity, cos):
             return False
@@ -519,9 +543,10 @@ def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
 
 
 def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether the condition ``formula sign``, as ``x + y > 0``, follows from the signs of its symbols.
+    """Return whether a condition follows from the signs of its symbols: ``formula`` x + y with the ``sign`` "> 0", say.
 
-    ``positive`` has, for each symbol of known sign, a SymPy symbol that has this sign as its assumption.
+    ``sign`` is "> 0", ">= 0" or "!= 0". ``positive`` has, for each symbol of known sign, a SymPy symbol that has this
+    sign as its assumption.
     """
     value = formula.xreplace(dict(positive))
     if sign == ">= 0":

@@ -172,7 +172,7 @@ class _Drawing:
     def drawn(self, place: int) -> Any:
         """Return a random rational value for an unknown, of a sign that the constraints allow.
 
-        ``place`` is the number of the unknown.
+        ``place`` is the index of the unknown.
         """
         source = self.source
         for _ in range(20):
@@ -242,7 +242,10 @@ class _Drawing:
         return True
 
     def univariate(self) -> bool:
-        """Solve an equation with a single unknown; return whether there is such an equation."""
+        """Solve the first of the remaining equations ``zeros`` with a single unknown, and store its value.
+
+        Return False if there is no such equation.
+        """
         for poly in self.zeros:
             places = occurring([poly])
             if len(places) == 1:
@@ -283,7 +286,7 @@ class _Drawing:
     # -- roots --------------------------------------------------------------------------------------------------------
 
     def root(self, poly: PolyElement, place: int) -> Any:
-        """Return a root of ``poly``, which has only the unknown with the number ``place``.
+        """Return a root of ``poly``, which contains one unknown, with the index ``place``.
 
         An irrational root is first added to the field.
         """
@@ -302,7 +305,7 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Add the cost of factoring a polynomial of the given degree; raise _DeadEnd if all costs exceed the budget.
+        """Add the cost of factoring a polynomial of this degree; raise _DeadEnd if the sum of costs exceeds the budget.
 
         Only a polynomial over an algebraic field, with irrational numbers, costs anything.
         """
@@ -313,9 +316,10 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root of ``factor``, which has only the unknown with the number ``place``.
+        """Return an irrational real root of ``factor``, which contains one unknown, with the index ``place``.
 
-        The root is added to the field, and all values move to that field. Raise _DeadEnd if there is no suitable root.
+        The root is added to the number field, and the values of the other unknowns are converted to the new field.
+        Raise _DeadEnd if no real root has the sign assumed for the unknown, or if the new field would be too large.
         """
         degree = factor.degrees()[place]
         numbers = [
@@ -353,7 +357,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
     """Return a polynomial with ``above/below`` in place of an unknown, times a power of ``below``.
 
-    The power is just so high that the result has no divisor. ``place`` is the number of the unknown.
+    The power is just so high that the result has no divisor. ``place`` is the index of the unknown.
     """
     degree = poly.degrees()[place]
     if not degree:

@@ -147,8 +147,9 @@ def _size(formula: Expr) -> Expr | None:
 def _by_absolute_values(formula: Expr) -> bool:
     """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
 
-    If u is the formula in the only negative term -c|u|, and v >= 0 the sum of the other terms, the sign of v^2 -
-    c^2 u^2 decides. To prove a sign, each positive term c|e| is replaced by c*e or -c*e, which are at most as large.
+    If the only negative term is -c|u|, and the sum v of the other terms is nonnegative, the formula is nonnegative
+    where v^2 - c^2 u^2 is, and this is examined instead. Then each positive term c|e| is replaced by c*e or -c*e, which
+    are at most as large: if one of the results is nonnegative, so is the formula.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
@@ -229,8 +230,9 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
     """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
 
-    ``gram`` is the matrix of the form, and ``sign`` returns 1 for the number of an unknown that is never negative, else
-    0. Linear terms with a coefficient >= 0 in such an unknown are left out: they only increase the value.
+    ``gram`` is the matrix of the form in (1, u0, u1, ..). ``sign(n)`` is 1 if the unknown with the index n is known to
+    be nonnegative, else 0. Linear terms with a coefficient >= 0 in such an unknown are left out: they only increase the
+    value.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):

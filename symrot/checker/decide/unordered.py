@@ -1,4 +1,4 @@
-"""Numbers that SymPy cannot order while it builds a formula, such as ``acos(cos(c))`` with an unrecognised pi in c."""
+"""Recognise SymPy's error about numbers that it cannot order, as for ``acos(cos(c))`` with c almost equal to pi."""
 
 __all__ = ["is_unordered"]
 

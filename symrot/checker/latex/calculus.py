@@ -207,7 +207,7 @@ class CalculusPart(NamesPart):
             self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
             integrand = mass
         elif not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits, \\int_a^b, dm, or a density and dV for an integral over a body")
+            raise self.fail("limits as in \\int_a^b; or, for an integral over a body, dm or a density and dV,")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 

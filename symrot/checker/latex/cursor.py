@@ -9,7 +9,7 @@ from typing import ClassVar
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
 from symrot.checker.claim.tree import Node
-from symrot.checker.latex.macros import expanded
+from symrot.checker.latex.macros import expanded, with_spelled_functions
 from symrot.checker.latex.shorthand import shorthands
 from symrot.checker.typed.cursor import Doubt
 from symrot.errors import InputError, complaint
@@ -134,6 +134,9 @@ class Cursor(cursor.Cursor):
             piece._replace(kind="command", text=_COMMANDS[piece.text]) if piece.text in _COMMANDS else piece
             for piece in expanded(tokens(source, start, stop), source, where)
         ]
+        if flips is not None:
+            pieces, spelled = with_spelled_functions(pieces)
+            self.notes += [f"{name} is read as a function, not as a product of letters" for name in spelled]
         if {"\\pm", "\\mp"} & {piece.text for piece in pieces}:
             if flips is None:
                 sign = next(piece for piece in pieces if piece.text in ("\\pm", "\\mp"))
@@ -157,8 +160,9 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
+        """Record an ambiguous place of the text; return whether its key is among ``self.flips``.
 
+        If so, the parser must give the place its less usual meaning. The key is (``kind``, start of ``item``), where
         ``kind`` is the kind of ambiguity. The place starts at ``item`` and ends at the position ``stop``.
 
         Raises

@@ -9,7 +9,7 @@ from functools import cache
 from symrot.errors import InputError, complaint
 from symrot.latex.tokens import Token, tokens
 
-__all__ = ["INSTEAD", "expanded"]
+__all__ = ["INSTEAD", "expanded", "with_spelled_functions"]
 
 _SHORT: Sequence[tuple[str, Mapping[int, str]]] = (
     (r"\vb \va \vectorbold \vectorarrow \pmb \textbf", {1: r"\mathbf{#1}"}),
@@ -20,7 +20,7 @@ _SHORT: Sequence[tuple[str, Mapping[int, str]]] = (
     (r"\boxed \fbox \cancel \ensuremath \underbrace \overbrace", {1: r"{#1}"}), (r"\stackrel \overset", {2: r"#2"}),
     (r"\nicefrac \sfrac", {2: r"\frac{#1}{#2}"}), (r"\abs", {1: r"\left|#1\right|"}),
     (r"\norm", {1: r"\left\|#1\right\|"}),
-    (r"\num", {1: r"#1"}), (r"\ang", {1: r"#1^\circ"}), (r"\vdot \dotproduct \bullet", {0: r"\cdot"}),
+    (r"\num \mathop", {1: r"#1"}), (r"\ang", {1: r"#1^\circ"}), (r"\vdot \dotproduct \bullet", {0: r"\cdot"}),
     (r"\cross \cp \crossproduct \wedge", {0: r"\times"}), (r"\Tr \tr \trace", {0: r"\operatorname{tr}"}),
     (r"\Rightarrow \implies \iff \Leftrightarrow \Longrightarrow \Longleftrightarrow \land \therefore", {0: ","}),
     (r"\coloneqq \triangleq \doteq \coloneq", {0: "="}), (r"\dagger", {0: r"\top"}), (r"\colon", {0: ":"}),
@@ -48,6 +48,18 @@ BRACED = ("\\underbrace", "\\overbrace")
 
 LONGEST_NUMBER = 8
 """The most tokens that are looked at for the number of an equation."""
+
+SPELLED = {
+    **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",
+                                      "arcsin", "arccos", "arctan", "det")},
+    **dict.fromkeys(("tr", "Tr", "trace"), "\\operatorname{tr}"),
+}  # fmt: skip
+"""Function that people write without a backslash, as in ``2 sin\\theta cos\\theta`` -> the LaTeX for it."""
+
+ARGUMENTS = ("command", "letter", "number", "group", "font", "left", "fraction")
+"""Kinds of the tokens with which an argument without brackets begins."""
+
+MATRIX_MARKS = ("\\mathbf", "\\bm", "\\boldsymbol", "\\mathrm", "[", "\\bf", "{")
 
 INSTEAD = {
     **dict.fromkeys(("\\SI", "\\si", "\\unit"), "the number without its unit"),
@@ -84,6 +96,47 @@ def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Toke
     return list(_Expansion(pieces, source, where).all())
 
 
+def with_spelled_functions(pieces: Sequence[Token]) -> tuple[list[Token], list[str]]:
+    r"""Return tokens with commands in place of functions that are written as letters, and the names of these functions.
+
+    The letters stand side by side and no other letter touches them; an argument follows. ``tr(t)`` stays a product:
+    only a matrix, which has a capital or a bold letter, has a trace.
+
+    Examples
+    --------
+    >>> from symrot.latex.tokens import tokens
+    >>> pieces, names = with_spelled_functions(tokens(r"2 sin\theta"))
+    >>> "".join(piece.text for piece in pieces), names
+    ('2\\sin\\theta', ['sin'])
+    """
+    result, names, place = list[Token](), list[str](), 0
+    while place < len(pieces):
+        end = place + 1
+        while pieces[place].kind == "letter" and _touches(pieces[end - 1], pieces[end]):
+            end += 1
+        word = "".join(piece.text for piece in pieces[place:end])
+        if word in SPELLED and _is_argument(pieces[end:], word):
+            names += [word] if word not in names else []
+            result += [piece._replace(start=pieces[place].start) for piece in _template(SPELLED[word])]
+        else:
+            result += pieces[place:end]
+        place = end
+    return result, names
+
+
+def _touches(letter: Token, after: Token) -> bool:
+    return after.kind == "letter" and after.start == letter.start + 1
+
+
+def _is_argument(after: Sequence[Token], function: str) -> bool:
+    """Return whether tokens begin with an argument, or the power, of a ``function``: of a trace, with a matrix."""
+    first, *rest = after
+    if SPELLED[function] != f"\\{function}":
+        inside = rest[0] if first.text == "(" and rest else first
+        return inside.text in MATRIX_MARKS or (inside.kind == "letter" and inside.text.isupper())
+    return first.text in ("(", "^") or first.kind in ARGUMENTS
+
+
 @cache
 def _template(text: str) -> tuple[Token, ...]:
     return tuple(tokens(text)[:-1])
@@ -98,9 +151,10 @@ class _Expansion:
         while self.place < len(self.pieces):
             piece = self.pieces[self.place]
             self.place += 1
-            if piece.kind == "group" and self.at("\\bf", "\\boldmath"):  # {\\bf a}
+            if piece.kind == "group" and self.at("\\bf", "\\boldmath", "\\rm"):  # {\\bf a}
+                font = "\\mathrm" if self.at("\\rm") else "\\mathbf"
                 self.place += 1
-                yield Token("font", "\\mathbf", piece.start)
+                yield Token("font", font, piece.start)
                 yield piece
             elif piece.text in ("\\quad", "\\qquad") and (length := self.equation_number()):
                 self.place += length
@@ -122,7 +176,10 @@ class _Expansion:
         return end + 1 if inside and is_number and rest[end + 1].kind in ("end", "line", "close") else 0
 
     def longer(self, command: Token) -> Iterator[Token]:
-        """Yield the tokens of the longer form of a command; the command's arguments are at the cursor."""
+        r"""Yield the tokens for which a command stands: those of ``\frac{dx}{dt}`` for ``\dv{x}{t}``.
+
+        The command's arguments are at the cursor. The table ``MACROS`` has the text for each such command.
+        """
         forms = MACROS[command.text]
         if self.at("*"):
             self.place += 1
@@ -145,7 +202,7 @@ class _Expansion:
         return self.place < len(self.pieces) and self.pieces[self.place].text in texts
 
     def order(self) -> Sequence[Token]:
-        """Parse the order of a derivative in square brackets, ``[2]``; return its tokens, none if there is no order."""
+        """Parse the order of a derivative, ``[2]``, and return the tokens in the brackets; [] without brackets."""
         if not self.at("["):
             return []
         texts = [piece.text for piece in self.pieces[self.place :]]

@@ -116,7 +116,8 @@ class NamesPart(SumsPart):
     def change(self, name: str, item: tree.Node) -> Node:
         r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t.
 
-        In the less usual reading, Delta is a factor; then return the node of Delta alone.
+        The text is ambiguous: if ``self.flips`` asks for the less usual meaning, Delta times t, only the node of Delta
+        is returned, and t is parsed as the next factor.
         """
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
@@ -137,7 +138,7 @@ class NamesPart(SumsPart):
         """Raise InputError for ``f(x)`` and ``f(0)``: each may be a product, or the value of a function."""
         inner = self.peek(1)
         if self.at("(") and (inner.kind == "number" or is_letter(inner)) and self.peek(2).text == ")":
-            raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
+            raise self.fail("\\cdot before the bracket if this is a product, or a declared function if it is a call,")
 
     def subscript(self, mark: tree.Script) -> str:
         """Return the content of a subscript as text: "1x" for ``_{1x}``."""
@@ -196,7 +197,7 @@ class NamesPart(SumsPart):
             if declared:
                 return Node("name", declared[0])
             if not self.names.implied:
-                raise self.fail(f"a function of time, since {name} is differentiated,", item)
+                raise self.fail(f"{name} to be declared as a function of t, since it is differentiated,", item)
             self.timed.add(name)
         for _ in range(times):
             node = appended(node, TIME)
@@ -215,14 +216,16 @@ class NamesPart(SumsPart):
         r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""
         inside = tree.alone(mark.inside)
         if inside.kind == "number" and mark.text in BOLD:
-            raise self.fail("the name of a unit matrix that is defined as eye(n), not a bold number,", inside)
+            raise self.fail(
+                "a name that is defined as a unit matrix, such as E = eye(3), instead of a bold number", inside
+            )
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:
-                raise self.fail(f"a vector or matrix that is defined under the name {name!r}", mark)
+                raise self.fail(f"{name} to be declared as a vector or matrix, since it is marked as one,", mark)
             node = self.vector(name)
         if mark.text == "\\hat" and (bare := str(node.value).removesuffix(MARK)) in self.vectors:
             self.vectors[bare] = True
@@ -238,9 +241,9 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record that a name is a vector or tensor, which needs names for its components; return its node.
+        """Record that a name is a vector or tensor, so that the claim gives it components, and return its node.
 
-        The name in the node ends with MARK.
+        The name in the node ends with an arrow (``MARK``), which distinguishes the vector r from its length r.
         """
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
@@ -308,7 +311,7 @@ class NamesPart(SumsPart):
         if not name.isalnum() or not name[0].isalpha():
             raise self.fail("a name of letters and digits")
         if name == "d" and self.peek().kind == "end":
-            raise self.fail("a derivative or an integral around d", font)
+            raise self.fail("an upright d only in a derivative d/dx or an integral with dx", font)
         return Node("call", SPELLED[name]) if name in SPELLED else self.named(name, font)
 
     def operator(self, item: tree.Node) -> Node:

@@ -84,8 +84,10 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    A text may have chains ``a = b = c``, with commas between them or on lines of their own. A text with ``\\pm`` is
-    read twice: with the upper signs, then with the lower ones.
+    Each ambiguous place, such as ``\cos^{-1} x``, gives a further reading, in which it has its less usual meaning; the
+    attribute ``flipped`` has the texts of these places. A text may have chains ``a = b = c``, with commas between them
+    or on lines of their own. A text with ``\pm`` has, in every reading, the equations with the upper signs and those
+    with the lower ones.
 
     Raises
     ------
@@ -104,7 +106,11 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return one reading of a LaTeX text; ``flips`` are the keys of ambiguous places with their less usual meaning."""
+    """Return one reading of a LaTeX text: the ambiguous places in ``flips`` have their less usual meaning.
+
+    ``flips`` has the keys of the places, pairs (kind of ambiguity, position). Other ambiguous places have their usual
+    meaning.
+    """
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
@@ -213,7 +219,7 @@ class _Interpreter(CalculusPart):
         return [([], [formula])]
 
     def equation(self) -> list[Line]:
-        """Parse one equation; return it as the only line."""
+        """Parse a text that is a single equation; return it in a list, as :meth:`equations` returns several."""
         (line,) = self.chains()
         return [line]
 
@@ -315,10 +321,10 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield the items of each line of an environment, and whether the line only continues the one before it.
+    """Yield the items of each line of an environment, and whether it continues the equation of the line before it.
 
-    It does if it starts with a plus or minus sign and, moreover, its first cell is empty or it has no relation sign.
-    Spaces, and commas and full stops at the end of a line, are left out.
+    It continues it if it starts with a plus or minus sign and has no relation sign, or starts with an empty cell before
+    the sign, as in ``& + b``. Spaces, and commas and full stops at the end of a line, are left out.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]

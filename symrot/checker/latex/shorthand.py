@@ -66,10 +66,10 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms that begin with a letter such as c or s, by position; none if the letter occurs alone.
+    """Return the short forms of functions in a text, such as c_1 for cos(theta_1), by their positions.
 
-    ``letters`` maps such a letter to its function, c to cos. None is returned unless there are both a cosine and a
-    sine.
+    ``letters`` maps the letters of such forms to their functions, c to cos. The result is {} if one of these letters
+    also occurs as a name, or if the text lacks a cosine or a sine in this form.
     """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
@@ -93,10 +93,11 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``, with their angles, by position.
+    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``, with their angles, by their positions.
 
-    ``numbered`` has the function and the number of each. The result is empty if the text has too few of them: c_1 may
-    then be a name.
+    ``numbered`` has (function, number) by position: ("cos", "1") for c_1. The result is {} unless the text has two
+    different cosines and two different sines of this kind: otherwise c_1 may be a name. Beside the rate of theta_1, one
+    of each is enough.
     """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
@@ -116,7 +117,8 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
     r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``.
 
-    Beside c_2 and s_3, whose numbers are in ``digits``, it shows that these are a cosine and a sine.
+    Beside such a rate, c_2 and s_3 are probably cos(theta_2) and sin(theta_3). ``digits`` are the numbers of these
+    short forms; they and the number of the rate must be 1, 2 or 3.
     """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
@@ -168,10 +170,10 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the Greek letter of the angles that short forms such as c_1 mean: theta if the text has ``\theta_1``.
+    r"""Return the letter of the angles that short forms such as c_1 mean: "theta" if the text has ``\theta_1``.
 
-    It is the only letter, q included, that has some of the ``digits`` as subscripts. The result is theta for a text
-    without Greek letters, and an empty text if two letters have such subscripts.
+    Candidates are Greek letters and q, with one of the ``digits`` as a subscript. If there are none or several, the
+    result is "", but it is "theta" for a text with neither a Greek letter nor a q with a subscript.
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):

@@ -75,7 +75,7 @@ class SumsPart(Cursor):
         """Parse a sum and return its tree."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING // 2:
-            raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels")
+            raise self.fail(f"at most {DEEPEST_NESTING // 2} nested levels of brackets and arguments")
         terms = [self.term(sign=True)]
         while self.at("+", "-"):
             negative = self.next().text == "-"
@@ -144,7 +144,10 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name without a mark, x or its rate, is a vector; the text is then parsed once more."""
+        """Record that a name without an arrow or bold type is a vector, since it is a factor of a cross product.
+
+        ``node`` is the name, such as r, or its rate. The text is then parsed once more, with this name as a vector.
+        """
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
@@ -162,7 +165,10 @@ class SumsPart(Cursor):
         return product([left if self.is_tensor(left) else Node("transpose", None, (left,)), right])
 
     def is_tensor(self, node: Node) -> bool:
-        """Return whether a tree is the name of a tensor, which has no definition: a name in bold such as I."""
+        """Return whether a tree is a name in bold for a tensor, such as I for inertia, and not for a vector.
+
+        Only vectors are listed as columns in the names of the claim.
+        """
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
     def is_row(self, node: Node) -> bool:
@@ -282,7 +288,7 @@ class SumsPart(Cursor):
             return number(Fraction(node.text))
         if is_letter(node) or node.text == "\\pi":
             return self.inside(node, lambda: self.base(self.next()))
-        raise self.fail("a group in braces", node)
+        raise self.fail("a letter, a digit, or a formula in braces", node)
 
     def is_cut(self, digit: tree.Node) -> bool:
         """Return whether a digit without braces belongs to a longer number, of which LaTeX raises only the first digit.
@@ -410,7 +416,7 @@ def last_factor(node: Node) -> Node:
 
 
 def name_of(node: Node) -> str:
-    """Return the name that a tree is, or whose rate it is; an empty text for any other tree."""
+    """Return the name of a symbol or function, or of what is differentiated: "x" for x, x(t) and dx/dt; else ""."""
     if node.kind == "call" and node.value == "diff":
         node = node.args[0]
     return str(node.value) if node.kind in ("name", "call") else ""

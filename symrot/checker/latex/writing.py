@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.notation import with_formulas
-from symrot.checker.claim.reader import Relation, read_relation
+from symrot.checker.claim.reader import Relation, read_relation, with_time
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.errors import InputError
@@ -86,6 +86,11 @@ def latex_of(
     """
     if relation[0] != "==":
         return None
+    nodes = [node for side in relation[1:] for _, node in walk(side)]
+    moving = {str(n.args[0].value) for n in nodes if n.value == "diff" and n.args[0].kind == "name"} - {*vectors}
+    if moving:  # the rate of a quaternion is diff(q, t), since its components are the functions of time
+        sign, left, right = relation
+        relation = sign, with_time(left, moving), with_time(right, moving)
     timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
     try:
         written = " = ".join(Writer(timed, vectors).formula(side) for side in relation[1:])

@@ -30,9 +30,9 @@ LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
 
 
 class ArrayFault(NamedTuple):
-    """A possible fault of a formula: the edit that undoes it, and the edited formula's values.
+    """A possible fault of a formula: the edit that undoes it, and the edited formula's values at the test points.
 
-    ``total`` is the sum of the entries at the first point, by which a list of faults is sorted.
+    ``total`` is the sum of the entries of the first of these values; lists of faults are sorted by it for look-ups.
     """
 
     total: float
@@ -49,9 +49,11 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the single edits of a formula with their values, sorted by the sum of the entries at the first test point.
+    """Return the formulas that one edit makes of ``formula``, each with its values at the test points.
 
-    Of a formula without arrays, these are only the edits that add brackets.
+    They are sorted by the sum of the entries of the edited formula's first value, for a look-up by values. If the
+    formula has no arrays, only brackets are added: other faults of scalar formulas are found part by part
+    (:mod:`symrot.checker.recognition.parts`).
     """
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []

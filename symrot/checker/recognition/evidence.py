@@ -149,9 +149,10 @@ def has_diameter(known: Identification) -> bool:
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether ``known`` is the name of a body's moment of inertia, and the fault ``code`` a number or term.
+    """Return whether a claim with the fault ``code`` may be a right moment of inertia, but of another body or axis.
 
-    Then the formula may be right for another body or, if its moment is larger, for a parallel axis.
+    It may be if ``known`` is the name of a formula for a body's moment of inertia, and the fault is a wrong factor, or
+    a missing or additional term ("factor", "missing_term", "extra_term").
     """
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
@@ -175,9 +176,10 @@ def has_word(known: str, words: Sequence[str] | None) -> bool:
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim's formula is more likely a known one with a fault than another, unknown formula.
+    """Return whether a claim's formula is more likely a known formula with a fault than another formula that is right.
 
-    ``near`` is the known formula one change away, with this fault. Only if it is likely, the claim is "doubtful".
+    ``near`` is the known formula one change away, with this fault. The verdict is "doubtful" only if the result is
+    True.
     """
     letters, words = names_in(named.formula), words_of(named)
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
@@ -265,8 +267,8 @@ def names_in(formula: Node) -> set[str]:
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
 
-    ``matrix`` tells whether the claim's formula is a vector or matrix: only such a one may be equal after a change,
-    such as a transpose.
+    ``matrix`` tells whether the claim's formula is a vector or matrix. Then it may also be the transpose of ``known``,
+    for example; a scalar formula must be equal to ``known`` as it is.
     """
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
@@ -297,12 +299,12 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a known formula agrees with the entries, axes and kinds of quantities in a claim's names.
+    """Return whether the names in a claim do not contradict the known formula to which the claim is compared.
 
-    ``named`` is the formula of the claim with the quantity that it is for. Examples of what must agree: R_12 can be
-    entry 12 or 21 of a rotation matrix and no other; in the parallel-axis theorem, I_G must be the moment about the
-    centre of mass; p_phi must be the momentum along z; and a letter for a moment of inertia must not stand for a
-    momentum.
+    ``named`` has the claim's formula and the name of its quantity. Examples of contradictions: the claim is for R_12,
+    but the known formula for entry 13 of a rotation matrix; I_G stands for the moment about another point than the
+    centre of mass in the parallel-axis theorem; p_phi is not the momentum along z; a letter for a moment of inertia
+    stands for a momentum.
     """
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
@@ -387,9 +389,10 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return in how many ways a known formula's name contradicts the name of a quantity: 0, 1 or 2.
+    """Return how many of two contradictions there are between the name of a quantity and that of a known formula.
 
-    ``known`` may state another component, as "first component" for omega_3, or the space frame for p, q and r.
+    First, the components differ: "first component of .." for omega_3. Second, ``known`` is in the space frame, but
+    ``name`` is one that books use for body components: p, q, r, or omega with a number.
     """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
@@ -411,9 +414,10 @@ def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int
 
 
 def rarity_of(known: Identification) -> tuple[bool, int]:
-    """Return a sort key of a known formula: smaller if it matches without a change, such as a transpose.
+    """Return a sort key of a known formula, smaller for those that a claim more probably means.
 
-    Among equals, formulas with an Euler sequence that books use often come first.
+    Formulas that match without a change, such as a transpose, come first, and among these the formulas in Euler
+    sequences that many books use.
     """
     return bool(known.how), _rank_of_sequence(known.name)
 

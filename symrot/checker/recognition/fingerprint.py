@@ -38,12 +38,12 @@ class NotInField(Exception):
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
-    """Return the values of a formula's entries at a point, modulo the prime.
+    """Return the values of a formula's entries at a point, in the field of the integers modulo ``PRIME``.
 
     Raises
     ------
     NotInField
-        For divisions by zero, and functions that the field does not have.
+        For divisions by zero, and for functions that cannot be evaluated in the field, such as exp.
     """
     known: dict[Expr, int] = dict(point)
     return tuple(_value(entry, known) for entry in entries)
@@ -70,7 +70,7 @@ def _computed(node: Expr, known: dict[Expr, int]) -> int:
     if isinstance(node, sympy.Abs):
         return _root(_value(node.args[0], known) ** 2)
     if node is S.Pi:
-        return _mixed(227)
+        return _pseudorandom(227)
     if type(node) in _CIRCULAR:
         above, below = _CIRCULAR[type(node)]
         point = _circle_point(node.args[0], known)
@@ -91,9 +91,10 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return the smaller square root of a field element, so that equal formulas under roots have equal roots.
+    """Return a square root of a field element, always the smaller one of the two as an integer.
 
-    If the element is no square, its negative is one, and the root of the negative is returned.
+    If the element is no square in the field, its negative is a square, and a root of the negative is returned. So equal
+    formulas under roots have equal values.
     """
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     return min(root, PRIME - root)
@@ -107,18 +108,20 @@ def _power(base: int, exponent: Rational) -> int:
     return pow(base, power, PRIME) if power >= 0 else pow(_inverse(base), -power, PRIME)
 
 
-def _mixed(value: int) -> int:
-    """Return a pseudorandom number computed from a number; it is the parameter of the circle point of an angle.
+def _pseudorandom(value: int) -> int:
+    """Return a pseudorandom field element computed from ``value``.
 
-    So the sine and cosine of an angle have no relation to its value elsewhere in a formula.
+    If a symbol t has this value, cos(t/4) and sin(t/4) become (1 - u^2)/(1 + u^2) and 2u/(1 + u^2), with u the element
+    returned. So they have no algebraic relation to t itself, which may also occur outside of sines and cosines.
     """
     return pow(value + 1_000_003, 65_537, PRIME)
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return (cosine, sine) of an angle, a sum of multiples of symbols, modulo the prime.
+    """Return (cosine, sine) of an angle as two field elements c and s with c^2 + s^2 = 1 modulo ``PRIME``.
 
-    ``known`` has the field element for each symbol.
+    The angle is a sum of multiples of symbols; ``known`` has the field element for each symbol. The usual theorems for
+    sums and multiples of angles hold.
     """
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
@@ -131,7 +134,7 @@ def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
         if angle is S.Pi:
             point = (0, 1)
         else:
-            u = _mixed(_value(angle, known))
+            u = _pseudorandom(_value(angle, known))
             below = _inverse(1 + u * u)
             point = ((1 - u * u) * below % PRIME, 2 * u * below % PRIME)
         if parts < 0:
@@ -150,8 +153,8 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 class Fingerprint:
     """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
 
-    A signature holds the values of the formula's entries at a point where its atom has one value, all others
-    another.
+    The signature of an atom holds the values of the formula's entries at the point where this atom has one number as
+    its value, and all other atoms have a second number. So it does not depend on names.
     """
 
     atoms: tuple[Expr, ...]
@@ -176,12 +179,14 @@ class Fingerprint:
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the atoms of a formula with their signatures, computed at the first trial point where it has a value.
+    """Return the fingerprint of a formula: its atoms, each with its signature as in :class:`Fingerprint`.
+
+    The two numbers of the signatures are the first ones in ``DRAWS`` for which the formula has a value.
 
     Raises
     ------
     NotInField
-        For a formula without symbols, or without values in the field.
+        For a formula without symbols, or one that cannot be evaluated modulo ``PRIME``.
     """
     written = sorted(atoms_of(entries), key=str)
     if (alike := _alike(entries, written)) is not None:
@@ -226,11 +231,12 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of an atom in a formula such as x/(A - B), which has no value where A and B are equal.
+    """Return the signature of ``atom`` in a formula such as x/(A - B), which has no value where A and B are equal.
 
-    Each point gives the atom one value, a second one of ``atoms`` another, and all remaining ones in ``written`` a
-    third. The signature is the sum of the formula's values over all choices of the second atom, without those where the
-    formula has no value.
+    At each point the atom has one number as its value, one of the other ``atoms`` has a second number, and all other
+    symbols have a third. The signature is the sum of the formula's values over all choices of the second atom, without
+    those where the formula has no value. ``written`` has all symbols of the formula, ``atoms`` those that change its
+    value.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

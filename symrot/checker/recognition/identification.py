@@ -77,7 +77,8 @@ LETTERS = {
 class View:
     """One arrangement of a formula's entries, such as the transpose.
 
-    ``how`` says in words how it differs from the formula; ``order`` gives the numbers of the entries.
+    ``how`` says in words how it differs from the formula. Entry i of the arrangement is entry ``order[i]`` of the
+    formula, both counted row by row.
     """
 
     how: str
@@ -195,12 +196,22 @@ def identified(
     is_relation: bool = False,
     fits: Callable[[Identification], bool] = _any,
 ) -> Iterator[Identification]:
-    """Yield the known formulas to which a SymPy value is equal, those with the most similar names first.
+    """Yield the known formulas to which a SymPy value is equal, those with the fewest changes and renamings first.
 
-    Steps of derivations are included only if ``steps``. Products of few symbols are included only if the claim has a
-    name for the value (``named``). If ``quantity`` is the name of the value, I_1 and omega_1 cannot stand for
-    quantities of different axes. If ``is_relation``, the value is the difference of an equation's sides, and known
-    relations are searched. ``fits`` tells whether a result may be meant; the others are left out.
+    Parameters
+    ----------
+    value : Any
+        A scalar or matrix. If ``is_relation``, it is the difference of an equation's sides, and known relations are
+        searched.
+    steps : bool
+        Whether steps of derivations are searched too.
+    named : bool
+        Whether the claim has a name for the value. Otherwise products of few symbols are left out.
+    quantity : str or None
+        The name that the claim gives to the value. If there is one, the renaming must not mix up axes:
+        if I_1 stands for the moment about some axis, omega_1 must be the component along the same axis.
+    fits : function
+        Tells whether a claim may mean an identification, by its units and names; others are left out.
     """
     entries, shape = flatten(value)
     try:
@@ -227,9 +238,9 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a match: the numbers of its changes, renamed symbols, and symbols with other initials.
+    """Return a sort key of a match: (changes of the arrangement, renamed symbols, symbols with another first letter).
 
-    A change is one such as a transpose or the other sign.
+    All three are counts. Changes of the arrangement are a transpose, the opposite sign and so on.
     """
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
@@ -307,7 +318,7 @@ def _matched(
     quantity : str or None
         The name that the claim gives to the formula.
     fits : function
-        Tells whether an identification may be meant.
+        Tells whether a claim may mean an identification, by its names, units and context.
     """
     theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
@@ -354,9 +365,10 @@ def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether each rate of a known symbol stands for the rate of what the symbol stands for.
+    """Return whether a renaming maps the rate of each symbol to the derivative of what the symbol is mapped to.
 
-    ``pairs`` are (known name, name in the claim). If L_1 stands for L(t), then dL_1 must stand for ``diff(L(t), t)``.
+    ``pairs`` are (known name, name in the claim). If the known symbol L_1 becomes L(t), its rate dL_1 must become
+    ``diff(L(t), t)``.
     """
     renamed = dict(pairs)
     functions = {mine: renamed[mine] for mine in renamed if renamed[mine].endswith("(t)") and f"d{mine}" in renamed}
@@ -364,10 +376,11 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether each letter of a formula for a vector may have the unit of the quantity for which it stands.
+    """Return whether each letter in a claim's formula for a vector may have the unit of what it stands for.
 
-    ``pairs`` are (known name, name in the claim). omega cannot be a velocity, nor M. Numbers without unit, as in a
-    quaternion, have any letter, and the coordinates x, y and z of a point may be the components of any vector.
+    ``pairs`` are (known name, name in the claim). Neither omega nor M can stand for a velocity. A known symbol without
+    unit, such as a component of a quaternion, may have any letter in the claim; the coordinates x, y and z of a point
+    may be the components of any vector.
     """
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
@@ -495,10 +508,11 @@ def _factor(
     idle: Sequence[Expr],
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant factor by which a known formula (``theirs``) becomes another one (``own``); None without one.
+    """Return the constant factor k with own = k * theirs, or None if there is none among ``factors``.
 
-    It is one of ``factors``, and is computed from values at a point. ``pairing`` gives the symbol in the other formula
-    for each known symbol, and ``idle`` are symbols that do not change its value.
+    ``theirs`` is a known formula, ``own`` that of the claim. The factor is determined from values at a random point.
+    ``pairing`` gives the claim's symbol for each known symbol; ``idle`` are symbols in ``own`` that do not change its
+    value.
     """
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}

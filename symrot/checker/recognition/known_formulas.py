@@ -310,10 +310,10 @@ SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentu
 def _selected(
     formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
 ) -> Iterator[tuple[str, Known]]:
-    """Yield (key, formula) for the formulas that are long enough to be recognised and short enough for the file.
+    """Yield (fingerprint key, formula) for the formulas that ``known_formulas.toml`` is to contain.
 
-    They have at least ``least`` symbols, and their texts at most ``longest`` characters. With ``is_relation``, they are
-    differences that are zero.
+    They have at least ``least`` symbols, so that they can be recognised, and at most ``longest`` characters. The flag
+    ``is_relation`` is stored with them: they are then differences that are zero, and are looked up for equations only.
     """
     of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
@@ -337,9 +337,10 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the end ", squared" of a name such as "spin .., squared", or one such as ", acos"; otherwise ''.
+    """Return the end of a known formula's name that says of which function of the quantity the formula is; "" if none.
 
-    The formula is then not for the quantity itself, but for its square or cosine.
+    The name "spin .., squared" has the end ", squared" and a formula for the square of the spin; "nutation .., acos"
+    has ", acos" and a formula for the cosine of the angle.
     """
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
@@ -357,7 +358,10 @@ def _is_monomial(entry: Expr) -> bool:
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
-    """Return whether the nonzero entries are different symbols: such a vector or diagonal matrix says nothing."""
+    """Return whether the nonzero entries of a formula are symbols, all different, as in ``diag(A, B, C)``.
+
+    Every other such vector or matrix has the same fingerprint, so that nothing can be recognised by it.
+    """
     nonzero = [entry for entry in entries if entry != 0]
     return all(entry.is_Symbol for entry in nonzero) and len(set(nonzero)) == len(nonzero)
 

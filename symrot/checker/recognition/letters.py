@@ -111,7 +111,10 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
 
 
 def pieces_of(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of all nodes in a tree, so that a test point stores their values."""
+    """Return the identities (``id``) of all nodes in a tree.
+
+    A test point gets this set, and then stores the value of each of these nodes, so that it is computed only once.
+    """
     return frozenset(id(node) for _, node in walk(tree))
 
 

@@ -20,12 +20,13 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim may mean a body with two equal moments of inertia, and so has only one letter for them.
+    """Return whether a claim may mean a body with two equal moments of inertia, for which it has a single letter.
 
-    ``absent`` is the moment that the claim lacks, ``letter`` the letter that would stand for it too, and ``times``
-    counts how often this letter occurs. Books give equal moments the letter of the first: I_1 for I_1 = I_2, and I_2
-    for I_2 = I_3. The axis of symmetry may be any axis if the letter occurs once, since a formula such as
-    ``A p^2 + B (q^2 + r^2)`` is clearly meant for equal moments; otherwise it must be the third.
+    ``absent`` is the moment that the claim lacks, ``letter`` the candidate for the common letter, and ``times`` counts
+    how often this letter occurs. Books give equal moments the letter of the first: I_1 if I_1 = I_2, and I_2 if I_2 =
+    I_3. If the letter occurs once, the last two moments may be equal as well as the first two: ``A p^2 + B (q^2 +
+    r^2)`` is clearly meant for B = C. If it occurs more than once, only the first two may be, as the third axis is the
+    usual one of symmetry.
     """
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
@@ -62,9 +63,10 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the rational k and l for which the values ``added`` to a moment are m (k a^2 + l b^2), or [None].
+    """Return the rational numbers [k, l] for which m (k a^2 + l b^2) is what is ``added`` to a moment of inertia.
 
-    ``lengths`` are the values of a and b at the test points.
+    ``added``, ``mass`` (m) and ``lengths`` (a and b) are values at the test points. If there are no such numbers, the
+    result is [None], or has None for a number that is no simple fraction.
     """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)

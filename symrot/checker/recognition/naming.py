@@ -140,8 +140,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
     """Return the verdict on ``omega = [matrix] q_dot`` by its matrix alone, if q_dot is a single name.
 
-    Return None for other claims, and if the matrix is no known rate matrix. With ``repair``, a doubtful matrix has
-    repairs.
+    Return None for other claims, and if the matrix is no known rate matrix. If ``repair`` and the verdict is "doubtful"
+    (the matrix becomes a known one by a change), the verdict also has the corrected equations as repairs.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
@@ -244,10 +244,10 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether each hypothesis gives a name to a formula, or says that a vector or quaternion has length one.
+    """Return whether a claim under these hypotheses may be compared with known formulas at points that obey them.
 
-    Points that obey other hypotheses, such as the equality of two moments, belong to special cases of known
-    formulas.
+    Allowed are hypotheses that give a name to a formula, and that say that a vector or quaternion has length one. Under
+    others, such as A = B for two moments, a formula may be the special case of a known one, and seem to have a fault.
     """
     short = claim.defining
     return all(
@@ -266,9 +266,10 @@ def _is_norm(side: Node, other: Node) -> bool:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None.
+    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none.
 
-    The verdict is "recognised" if the formula is a known one already, for some signs of the letters in its roots.
+    The verdict is "recognised" instead if the formula equals a known one without a change, but only for letters of
+    certain signs, as ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for a > 0.
     """
     words = words_of(named)
     nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
@@ -306,10 +307,11 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return, in a tuple, the known formula of ``near`` if the claim's equals it for some signs of letters in roots.
+    """Return, in a tuple, the known formula of ``near`` if it equals the claim's formula for letters of certain signs.
 
-    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only. The
-    tuple is empty for all other formulas.
+    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
+    ``near`` has the known formula with its renaming, and the corrected formula that is compared. Otherwise () is
+    returned.
     """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
@@ -410,8 +412,8 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
-    The likeliest formula comes first. ``least_symbols`` is the least number of symbols in a formula that is looked up;
-    a name that tells the quantity may allow fewer.
+    The likeliest formula comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up, with the
+    exception in :func:`_readings_of_formula`.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -427,9 +429,10 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that say the same as ``side == tree``, with the side that has the claim's quantity.
+    """Return the known relations that say the same as the equation ``named.side == tree``.
 
-    ``least_symbols`` is the least number of symbols in an equation that is looked up.
+    ``named.side`` is the side of the claim with the quantity. Equations with fewer than ``least_symbols`` symbols are
+    not looked up; the result is then empty.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -460,8 +463,9 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    ``least_symbols`` is the least number of symbols in a formula that is looked up; a name that tells the quantity may
-    allow fewer.
+    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is empty. But one symbol
+    suffices if the name of the claim's quantity (``named.name``) tells what it is, and ``least_symbols`` is
+    ``LEAST_SYMBOLS``.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -494,10 +498,11 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return x and ", squared" for a value sqrt(x), u and ", acos" for acos(u), so also for asin and atan2.
+    """Return the argument of the outer function of a value, and the end of a known formula's name for this function.
 
-    The second is the end of the names of the formulas among which the first is looked up. Any other value is returned
-    with an empty text.
+    Known formulas with roots and inverse functions are stored without them. So sqrt(x) gives (x, ", squared"), acos(u)
+    gives (u, ", acos"), and atan2(y, x) gives (Matrix([y, x]), ", atan2"). Any other value is returned with an empty
+    text.
     """
     if is_matrix(value):
         return value, ""

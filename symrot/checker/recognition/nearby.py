@@ -1,7 +1,8 @@
 """Known formulas that differ from a claim by one fault: a numeric search, whose results remain to be proven.
 
-For each known formula of the quantity that a claim names, the claim's formula should have the values of the known
-formula. :mod:`symrot.checker.recognition.parts` finds the single part, if there is one, that makes the values differ.
+It compares a claim with all known formulas for the quantity that the claim names. For each, it computes the values that
+the claim's formula would have if it were right. :mod:`symrot.checker.recognition.parts` then looks for a single part
+whose change gives the formula these values.
 """
 
 import math
@@ -62,12 +63,13 @@ TIME = Node("name", "t")
 class Near(NamedTuple):
     """A candidate for a repair: the formula ``tree`` is one change away from the claim's, and may be a known formula.
 
-    ``code`` and ``cost`` are those of the fault. ``renamed`` is the number of symbols with new names. If
-    ``has_other_unit``, the claim's formula has another unit than the known one. If ``is_shifted``, it is the known
-    moment of inertia plus m d^2, like one about a parallel axis. If ``is_symmetric``, it is the known formula for
-    equal moments of inertia. ``letter`` is the changed part, if that is a symbol. ``array_letters`` is the number
-    of components and other letters of a formula with vectors or matrices, otherwise 0. ``renaming`` gives the letters
-    of the claim for the symbols of the known formula.
+    ``code`` and ``cost`` are those of the fault that the change corrects. ``known`` is the known formula, and
+    ``renamed`` the number of its symbols with new names. ``has_other_unit``: the claim's formula has another unit than
+    ``known``. ``is_shifted``: the claim's formula is the known moment of inertia plus m d^2, like one about a parallel
+    axis. ``is_symmetric``: the claim's formula is ``known`` for a body with two equal moments of inertia. ``letter`` is
+    the changed part, if that is a symbol. ``array_letters`` counts the letters of a formula with vectors or matrices,
+    each component as one letter; it is 0 for other formulas. ``renaming`` gives the letters of the claim for the
+    symbols of the known formula.
     """
 
     cost: float
@@ -191,9 +193,11 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula, with all variants of its parts that usual faults suggest, sorted by value at the first point.
+    """A claim's formula with all changes that usual faults suggest, sorted for a look-up by value.
 
-    ``arrays`` are whole formulas after one edit; ``values`` are the values of the formula itself.
+    ``variants`` has, for each part, (value at the first test point, variant), in the order of the values. A variant is
+    a change of this part, with its values at all test points. ``arrays`` has the edits of the whole formula, which undo
+    faults of vectors and matrices. ``values`` are the formula's own values.
     """
 
     named: NamedFormula
@@ -204,7 +208,10 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part of the formula that have the values which this part should have."""
+        """Yield the variants of a part whose values at all test points are ``part.needed``.
+
+        These are the values that the part must have for the whole formula to equal the known one.
+        """
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -239,10 +246,10 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the formulas that one change of the claim's formula gives, if this then has the values of ``known``.
+    """Return the formulas that one change makes of the claim's formula and that have the values of ``known``.
 
-    ``renaming`` gives the claim's name for each known symbol. Return None if the claim's formula has these values
-    already.
+    ``renaming`` gives the claim's name for each known symbol, or None for a symbol that the claim lacks. The list is
+    empty if no single change gives these values. None is returned if the claim's formula has them without a change.
     """
     named, letters = search.named, search.letters
     atoms = {text_of(atom): atom for atom in letters.atoms}
@@ -338,7 +345,11 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 
 def _repaired(formula: Node, path: Path, change: Change) -> Node:
-    """Return a formula with the changed part at ``path``; the numbers in its other parts are left as they are."""
+    """Return ``formula`` with the part at ``path`` changed.
+
+    If a numeric factor was changed, factors 1 and fractions inside fractions are removed from the result. Otherwise all
+    other numbers are left as typed.
+    """
     tree = flattened(replaced(formula, path, lambda _: change.made))
     return normalise_factors(tree) if change.code == "factor" else tree
 
@@ -388,7 +399,8 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
     """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units.
 
-    ``nodes`` gives the letter for each known symbol. Both are evaluated before and after a change of the base units.
+    ``nodes`` gives the letter for each known symbol. The claim's formula and ``known`` are evaluated in SI units and in
+    other base units, as listed in ``UNITS``. If the ratio of their values changes, their units differ.
     """
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):
@@ -423,7 +435,10 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which a quantity changes when the base units of its unit do; None for an unknown unit."""
+    """Return the factor by which the number of a quantity changes in other base units; None for an unknown unit.
+
+    ``UNITS`` has the factor of each base unit: with factors f for m and g for s, the factor for m/s^2 is f/g^2.
+    """
     if unit is None:
         return None
     powers = read_unit(unit.partition(",")[0])
@@ -437,10 +452,11 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that a claim's formula should have if ``known`` has the values ``target``; None if it has none.
+    """Return the values that the claim's formula should have if ``target`` are the values of the formula ``known``.
 
-    The side of the claim may be a multiple or power of its quantity, and ``known`` may be a formula for the square of
-    it.
+    They are those of ``named.side``, which may be a multiple or power of the claim's quantity, as in 2*omega; ``known``
+    may be a formula for the square or the cosine of the quantity. Return None if these values do not give those of the
+    side, for example if the quantity would be the root of a negative value.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

@@ -66,14 +66,19 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
 
 
 def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
-    """Return the sort key of a renaming: the most similar ones, and of these the complete ones, come first."""
+    """Return the sort key of a renaming, smallest for names that are most similar to the known ones.
+
+    It consists of the number of symbols with another axis, the number of changed names, whether a symbol has no name in
+    the claim (the value None), and the number of names with another letter.
+    """
     return _moved(renaming), strangeness(renaming), None in renaming.values(), _unlike(renaming)
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the renaming of the components of a quaternion product whose factors are numbered: q0 to a1, p0 to a2, ...
+    """Return the renaming of the components of a quaternion product whose factors are numbered: q0 to a1, p0 to a2, ..
 
-    Such names ``own`` are a1, .., d1 and a2, .., d2. The result is None for other names.
+    ``own`` are the names in the claim: a1, b1, c1, d1 for the first factor q, and a2, .., d2 for the second one, p. One
+    of them may be missing, and its value is then None. The result is None if the names do not have this form.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -87,9 +92,10 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name that a component ``known`` of a quaternion product, which the claim lacks, would have in it.
+    """Return the claim's name for the component ``known`` of a quaternion product, if the claim lacks it.
 
-    It is c2 next to a2, b2, d2 and c1. Return None if the claim's names have no such numbers.
+    It follows from the other names in ``renaming``. If the factors are (a1, b1, c1, d1) and (a2, b2, d2), the component
+    that is absent is c2. Return None if the claim's names have no such numbers.
     """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
@@ -111,7 +117,10 @@ def _moved(renaming: dict[str, str | None]) -> int:
 
 
 def _unlike(renaming: dict[str, str | None]) -> int:
-    """Return the number of symbols that a renaming gives a name with another first letter."""
+    """Return how many symbols have a name in the claim that does not begin with their own letter.
+
+    Symbols without a name in the claim (value None) do not count.
+    """
     return sum(other is not None and not _has_letter_of(name, other) for name, other in renaming.items())
 
 
@@ -182,9 +191,10 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for the quantity ``known`` that a claim lacks, and whether the claim has similar names.
+    """Return a name for the known symbol ``known``, which the claim lacks, and whether it continues names of the claim.
 
-    Omega_3 is similar to Omega_1 and Omega_2.
+    If ``renaming`` (known name -> name in the claim) has Omega_1 and Omega_2, the name is Omega_3 and continues them.
+    Otherwise it is the usual name of the quantity.
     """
     for mine, other in renaming.items():
         if known in ORDER and mine in ORDER and other is not None and other[-1] == ORDER[mine]:

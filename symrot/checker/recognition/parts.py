@@ -70,7 +70,10 @@ class Part(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The tree that should replace a part, with the code and the cost of the fault that this corrects."""
+    """The tree ``made`` that replaces a part, and the ``code`` and ``cost`` of the fault that this corrects.
+
+    The cost is larger for faults that are less usual.
+    """
 
     made: Node
     code: str
@@ -181,10 +184,11 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, values) for the wrong row of a matrix that multiplies a column.
+    """Yield (path, entry, its needed values) for each entry in one row of a matrix that multiplies a column.
 
-    The values are those that the entry should have if it alone were wrong. ``values`` are those of the product,
-    ``needed`` those that it should have, and ``row`` is the row in which they differ.
+    In ``tree``, the product, entry ``row`` is wrong: it has the values ``values`` and should have ``needed``. One entry
+    in this row of the matrix may be the cause. For each entry, the values are those which it must have if only it is
+    wrong.
     """
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
@@ -267,7 +271,10 @@ def is_absent(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether a part, with all its entries, should be multiplied by one number other than 1."""
+    """Return whether one number, other than 1, times the values of a part gives the values that it should have.
+
+    It must be the same number at all points and for all entries of a matrix.
+    """
     ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
     first = ratios[0]
     return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
@@ -315,9 +322,10 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield all other symbols of the formula as replacements of ``node``, if it is a symbol.
+    """Yield all other symbols in ``letters`` as replacements of ``node``, if it is a symbol.
 
-    ``parent`` is the kind of the node around it, and ``values`` are its values; so in the functions below.
+    This function and the following ones have the same arguments: ``parent`` is the kind of the node around ``node``,
+    ``values`` are the values of ``node`` at the test points, and ``letters`` the symbols and angles of the formula.
     """
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
@@ -350,7 +358,10 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of a sine or the like: other functions of the angle, and its function of other angles."""
+    """Yield replacements of sin(u): other functions of u, sin(2u) and the like, and the sine of other angles.
+
+    Every circular function of an angle is treated so. The arguments are those of :func:`_of_letter`.
+    """
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args

@@ -79,7 +79,8 @@ WORK = _new("W_k", "J")
 class Relation(NamedTuple):
     """A relation of mechanics as a difference that is zero, with its title and the derivation that it comes from.
 
-    ``words`` gives, for each symbol for which the relation is solved, the first words of that formula's name.
+    ``words`` has the symbols for which the relation is solved, each with the words that the name of the solved formula
+    has before the title: "energy of" and the title "a heavy top" give "energy of a heavy top".
     """
 
     title: str
@@ -89,10 +90,10 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield (name, source, formula) for each symbol for which a relation is solved.
+    """Yield (name, source, formula) for each symbol in ``relation.words`` for which the relation can be solved.
 
-    These are the symbols in ``words`` that occur in it only linearly, or only as a square. The name of a formula for a
-    square ends with ", squared".
+    It is solved if the symbol occurs only linearly, or only as a square. The formula is then for the square, and its
+    name ends with ", squared".
     """
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():
@@ -334,7 +335,10 @@ def _by_spin(formula: Expr) -> Expr:
 
 
 def _heavy() -> Iterator[Relation]:
-    """Yield the energy of a heavy top by its spin, its equation of nutation, and its vertical angular momentum."""
+    """Yield relations of heavy and free tops: energies, the equation of nutation, angular momenta, the length of omega.
+
+    Energy and nutation are also given with the spin in place of the rate of the third Euler angle.
+    """
     omega, kinetic = _top()
     turned = kinetic.subs(DPSI, SPIN - DPHI * cos(THETA))
     yield Relation("a symmetric top", HEAVY, ENERGY - expand(turned), {ENERGY: "kinetic energy of"})

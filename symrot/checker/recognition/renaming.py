@@ -54,7 +54,10 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether the new names of an earlier and a later value, if numbered, have increasing numbers: w_1, w_2."""
+    """Return whether numbered names for initial and final values are in order: w_1 for omega_i, w_2 for omega_f.
+
+    Names without a number at the end are in order too.
+    """
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -63,10 +66,11 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return a pair for a renaming, (component in the known formula's name, ``quantity``), in a list.
+    """Return [(component_n, quantity)] if a known formula is for component n of a vector, else [].
 
-    For the known name "first component of .." and the quantity omega_x it tells that axis 1 becomes x. The list is
-    empty if either has no component.
+    For the known name "first component of .." and ``quantity`` omega_x, the pair is (component_1, omega_x). In a
+    renaming, it requires that axis 1 becomes axis x for the other symbols too. The list is also empty if ``quantity``
+    has no axis.
     """
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
@@ -87,7 +91,10 @@ def _angle(name: str) -> str:
 
 @cache
 def axes_of(name: str) -> frozenset[int]:
-    """Return the axes in the index of a name: {1, 2} for I_xy, {3} for omega_3 and for C; empty without an index."""
+    """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, and empty for omega.
+
+    Letters that are usual for one axis, such as the moment of inertia C, have this axis: {3}.
+    """
     name = re.sub("(_bar|_prime)+$", "", name)
     if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):
         return frozenset()  # a moment about a point O, or a value at the start
@@ -107,9 +114,10 @@ def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], or
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether the permutation ``order`` maps the axes of each known name to those of its new name.
+    """Return whether a permutation of the axes maps the axes in each known name to those in its new name.
 
-    ``axes`` are these pairs of axes; names without axes do not matter.
+    ``axes`` has a pair for each renamed symbol: (axes in the known name, axes in the new name). ``order`` has the
+    images of the axes 1, 2 and 3. A symbol without axes in one of its names does not matter.
     """
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

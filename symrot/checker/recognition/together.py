@@ -15,9 +15,10 @@ PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axi
 def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
     """Return whether several recognised lines can be the components of one quantity.
 
-    A line consists of the name of its left side, the names in its formula, and its verdict. Lines for omega_x,
-    omega_y, .. fit together if the names of their known formulas differ in the component alone, no two lines name
-    the same component, and each letter stands for the same quantity in all of them.
+    A line consists of the name of its left side, the names in its formula, and its verdict. Lines for omega_x, omega_y,
+    .. fit together under three conditions. Their verdicts name formulas such as "first component of .." and "second
+    component of ..", with the same words otherwise. No two lines name the same component. Each letter stands for the
+    same quantity on all lines.
     """
     groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
     for name, letters, verdict in lines:
@@ -35,10 +36,10 @@ def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]
 
 
 def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
-    """Return whether known formulas, one for each line, are different components of one quantity.
+    """Return whether known formulas, one for each line, can be different components of one quantity.
 
-    Each comes with the meanings of its letters, which must agree in all lines. The result is True if a formula is no
-    component.
+    Each formula comes with the meanings of the claim's letters (letter -> known symbol), which must agree on all lines.
+    If some formula is not for a component, nothing is compared and the result is True.
     """
     places = [tuple(_places(known.name)) for known, _ in choice]
     if not all(places):

@@ -123,9 +123,10 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further repairs, with the same values as one in ``repairs`` but written in another way.
+        """Return further proven repairs, with the same values as one in ``repairs`` but written in another way.
 
-        They must be proven too, and cost at most a little more than the first of ``repairs``.
+        The cost of a repair measures how unlikely its fault is. Repairs that cost more than the first of ``repairs``
+        plus ``AS_NEAR`` are left out.
         """
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []

@@ -152,21 +152,23 @@ def single_edits(
     Parameters
     ----------
     tree : Node
-    names, functions : collection of str
-        Symbols and definitions, and functions of time; an edit may exchange them for each other.
+    names : collection of str
+        Names of symbols and definitions.
+    functions : collection of str
+        Names of functions of time. An edit may put any of these names in place of another.
     matrices : function
         Tells whether a node is a matrix.
     moving : bool
         Whether the claim contains a derivative: an exchanged order of factors then means exchanged frames.
     opened : function
-        Tells whether the part at a path may be changed.
+        Tells whether an edit may change the part at a path; by default it may change every part.
     """
     yield from _everywhere(tree, matrices)
     order = "frame_body_space" if moving else "commutator_order"
     nodes = [node for _, node in walk(tree)]
     entries = {id(member) for node in nodes if node.kind == "list" for member in node.args}
     exponents = {id(node.args[1]) for node in nodes if node.kind == "power"}
-    closed = {id(part) for node in nodes if node.kind in ("power", "index", "call") and not _has_values(node)
+    closed = {id(part) for node in nodes if node.kind in ("power", "index", "call") and not _admits_squares(node)
               for part in node.args}  # fmt: skip
     for path, node in walk(tree):
         if not opened(path):
@@ -180,16 +182,20 @@ def single_edits(
             yield Edit("exponent", COST["exponent"], path, _put(tree, path, squared))
 
 
-def _has_values(node: Node) -> bool:
-    """Return whether a node is a call of ``Matrix``, ``diag`` or ``sqrt``.
+def _admits_squares(node: Node) -> bool:
+    """Return whether a square may be missing on an argument of a call: True for ``Matrix``, ``diag`` and ``sqrt``.
 
-    A square may be missing on an entry of a matrix or under a root; other calls are not searched for missing squares.
+    The arguments of other calls are not searched for missing squares.
     """
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
 def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a letter, a length or another scalar call, of which a square may be missing."""
+    """Return whether a part is a single name or call with a scalar value, so that a lost square may have stood on it.
+
+    Names and calls of functions are meant, and among the calls with vectors or matrices only dot, det and trace. A sum
+    such as a + b is not. ``matrices`` tells whether a node is a matrix.
+    """
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
     return not matrices(node) or node.value in ("dot", "det", "trace")
@@ -229,7 +235,7 @@ def _changes(
     Parameters
     ----------
     names, functions : collection of str
-        Symbols and definitions, and functions of time; an edit may exchange them for each other.
+        Names of symbols and definitions, and of functions of time; an edit may put any of them in place of another.
     matrices : function
         Tells whether a node is a matrix.
     order : str

@@ -15,7 +15,11 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs of a side that is a written-out matrix, in which each wrong entry has its own edit."""
+    """Return repairs of a side of the claim that is a written-out matrix: each wrong entry is edited by itself.
+
+    The other side has the values that the entries should have. The list is empty if no side is such a matrix, or if
+    some wrong entry has no edit that corrects it.
+    """
     candidates: list[Candidate] = []
     references = {"right": numeric.left, "left": numeric.right}
     for place in numeric.sides_to_edit:

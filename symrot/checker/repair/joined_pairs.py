@@ -83,7 +83,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left divided by right at the first test point, and the factor by which each edit of a side reduces it.
+    """Return (left/right,) at the first test point, and the factor by which each edit divides this quotient.
 
     The factors are in a dictionary, by the index of the edit in ``changes``. Both results are empty if a side is no
     scalar, or zero.
@@ -107,10 +107,11 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield the indices of each two edits that together make both sides equal.
+    """Yield pairs of indices of edits that together make both sides equal.
 
-    ``effects`` has the whole effect that is necessary, and that of each single edit. ``rest`` returns, from the whole
-    effect and that of the first edit, the effect that remains for the second one: their difference or quotient.
+    ``effects`` is (whole, single): the change of the sides' difference (or quotient) that would make them equal, and
+    the change that each edit gives, by its index. ``rest(w, e)`` returns what the second edit must give if the first
+    one gives e: ``w - e`` for differences, ``w / e`` for quotients.
     """
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)

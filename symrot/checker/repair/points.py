@@ -126,10 +126,10 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point at which ``variable`` is a dual number with slope 1.
+        """Return a copy of the point for derivatives: ``variable`` becomes a dual number with slope 1.
 
-        So the value of a tree at the copy also has the derivative by the variable: a symbol, ``f(t)``, or
-        ``diff(f(t), t)``.
+        The value of a tree at the copy is a dual number, whose slope is the derivative of the tree with respect to
+        ``variable``: a symbol, ``f(t)``, or ``diff(f(t), t)``.
         """
         order = 0
         inner = variable
@@ -139,7 +139,7 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise UndefinedValue("expected derivatives of low order, got one of too high an order")
+            raise UndefinedValue("expected fewer derivatives inside each other")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:

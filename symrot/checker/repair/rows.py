@@ -93,7 +93,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
     """
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
-        raise UndefinedValue("expected a matrix of the shape that the function needs, got another value")
+        raise UndefinedValue(f"expected a matrix with the rows and columns {shape} (None: any number), got {actual}")
     rows: Rows = value
     return rows
 

@@ -57,7 +57,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short formulas from which repairs are built, sorted by their values at the test points.
+    """Short formulas from which repairs are built, sorted by their value at the first test point, then at the second.
 
     They are products of a claim's symbols, functions, sines, cosines and brackets, and the products that the claim has.
     """
@@ -240,10 +240,10 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values of an unknown at the test points with which the claim holds; None if the search fails.
+    """Return the values that an unknown must have at the test points for the claim to be true; None if none are found.
 
-    The unknown is the node ``HOLE`` in the formula ``made``, which replaces the part at ``path`` of the tree ``place``.
-    The search starts from the values ``start``.
+    The formula ``made``, which contains the unknown as the node ``HOLE``, replaces the part at ``path`` of a side or
+    definition, whose name is ``place``. The secant method starts from the values ``start``.
     """
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
@@ -301,10 +301,11 @@ Reading = tuple[Node, tuple[str, float]]
 def _readings(
     numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace the part ``piece``, each with the code and the cost of this edit.
+    """Yield the formulas that may replace the part ``piece``, each with (code, cost) of the fault that this corrects.
 
-    ``values`` are the values of the part at the test points, and ``needed`` those with which the claim is true.
-    ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or directly below it in the tree.
+    The code is a word such as "sign_of_term". ``values`` are the values of the part at the test points, and ``needed``
+    those with which the claim is true. ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or
+    directly below it in the tree.
     """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
@@ -344,9 +345,10 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the missing values ``lacking`` are a rational multiple of ``piece``, or of one of its terms.
+    """Return whether the values ``lacking`` are a rational multiple of ``piece``, or of one of its terms.
 
-    Then this term has a wrong coefficient, and no term is missing.
+    ``lacking`` are the differences, at the test points, between the value that ``piece`` should have and its own. In
+    ``a + 2*b`` for ``a + 3*b`` they are those of b: the term b has a wrong coefficient, and no term is missing.
     """
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)

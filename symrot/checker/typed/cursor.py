@@ -76,8 +76,9 @@ class Cursor(ABC):
     Attributes
     ----------
     plain : bool
-        Whether the formula uses notation that is not SymPy syntax.
+        Whether the formula uses notation of plain text, such as ``2x`` or ``sin x``, which is not SymPy syntax.
     doubts : list of Doubt
+        The ambiguous places that were met so far.
     notes : list of str
         Sentences about the way in which the formula is read.
     timed : set of str
@@ -135,7 +136,7 @@ class Cursor(ABC):
     def deeper(self) -> None:
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
-            raise self.fail(f"at most {DEEPEST_NESTING} nested levels")
+            raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
         """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.

@@ -56,8 +56,8 @@ class OpenFunctionsPart(Cursor):
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
         """Parse the argument in ``sin 2x`` and return the call sin(2*x), and the exponent of the call or None.
 
-        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent at the end of the argument also
-        counts if this reading takes ``sin x^2`` as (sin x)^2.
+        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent at the end, as in ``sin x^2``, may
+        belong to x or to the sine; if the parser chooses (sin x)^2, the call sin(x) and the exponent 2 are returned.
         """
         self.plain = True
         first = self.token()
@@ -90,7 +90,7 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return 2 for ``sin x^2`` if this reading takes it as (sin x)^2; None if it is sin(x^2), as usual.
+        """Return 2 for ``sin x^2`` if the parser chooses the less usual meaning (sin x)^2; None if it is sin(x^2).
 
         ``factors`` are the factors of the argument so far; the exponent is removed from the last one if it is returned.
         """
@@ -274,9 +274,9 @@ class OpenFunctionsPart(Cursor):
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return x and the next place if ``dx`` is at ``place``; an empty text and a place for anything else.
+        """Return ("x", place after it) if the differential ``dx`` is at ``place``; otherwise the text is empty.
 
-        Places are counted in tokens from the cursor.
+        The second value is of no use if the text is empty. Places are counted in tokens from the cursor.
         """
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):

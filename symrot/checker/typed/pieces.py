@@ -46,7 +46,7 @@ class PiecesPart(OpenFunctionsPart):
         while True:
             token = self.token()
             if self.index - first > 5 * DEEPEST_NESTING:
-                raise self.fail("fewer methods and indices after one name (M.T[0, 1] has two),")
+                raise self.fail(f"at most {5 * DEEPEST_NESTING} methods and indices after one name (M.T[0, 1] has two)")
             if token.text == "." and token.kind == "mark":
                 if self.is_vector(node) and token.spaced and self.token(1).spaced:
                     return node  # the dot of a scalar product
@@ -96,8 +96,8 @@ class PiecesPart(OpenFunctionsPart):
     def is_star(self) -> bool:
         """Return whether the star at the cursor marks a conjugate, as in ``q v q*``, and is no product sign.
 
-        It does if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but it is the same
-        letter, after a blank: then the star marks a conjugate too.
+        The star marks a conjugate if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but
+        it is the same letter, after a blank: then the star marks a conjugate too.
         """
         after, before = self.token(1), self.tokens[self.index - 1]
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
@@ -110,11 +110,11 @@ class PiecesPart(OpenFunctionsPart):
         )
 
     def is_conjugate_before_factor(self) -> bool:
-        """Return whether a star such as the first one in ``q* v q`` marks a conjugate, and is no product sign.
+        """Return whether the star at the cursor marks a conjugate, as in ``q* v q``, and is no product sign.
 
-        No blank may be before the star, and a blank and a name must be after it. Moreover, the name before the star
-        must occur again as the factor after next, as in ``q* v q``, or the text must have a star that no factor
-        follows, as in ``(p q)* = q* p*``.
+        No blank may be before the star, and a blank and a name must be after it. One more sign of a conjugate is
+        necessary: the name before the star comes again after the next name (``q* v q``), or some star of the text has
+        no factor after it (``(p q)* = q* p*``).
         """
         if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
             return False
@@ -181,7 +181,7 @@ class PiecesPart(OpenFunctionsPart):
             if doubtful and self.other_reading("prime", start, start, mark.end):
                 return Node("name", name + "_prime" * order, (), self.span(start))
             if name in ("t", "pi"):
-                raise self.fail(f"a name that may depend on t instead of {name}", start)
+                raise self.fail(f"a quantity that may depend on t before the prime or dot, instead of {name},", start)
             if name not in self.vocabulary.functions and name in self.vocabulary.symbols:
                 raise self.fail(f"{name} to be declared as a function of t", start)
             if [self.token(n).text for n in range(3)] == ["(", "t", ")"]:
@@ -210,7 +210,7 @@ class PiecesPart(OpenFunctionsPart):
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
         if self.source[token.start] == "∂":
-            raise self.fail("a derivative ∂f/∂x (or write diff(f, x))", token.start)
+            raise self.fail("∂ only in a derivative such as ∂f/∂x, for which you may write diff(f, x),", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
@@ -271,7 +271,9 @@ class PiecesPart(OpenFunctionsPart):
     def is_factor(self, word: str) -> bool:
         """Return whether the name ``word``, which is before a bracket, is a factor as in ``m(a + b)``, and no function.
 
-        It is a factor if the text uses the name without a bracket elsewhere, or if it is one letter before a formula.
+        It is a factor if the text uses the name without a bracket elsewhere. It is also one if it is a single letter,
+        other than f, before a bracket that contains more than one name or number: m in ``m(a + b)``, but not in
+        ``m(a)``.
         """
         if word in self.vocabulary.symbols or word in self.vocabulary.alone:
             return True
@@ -360,7 +362,9 @@ class PiecesPart(OpenFunctionsPart):
         if element != MASS:
             mass = over_mass(inner)
             if mass is None:
-                raise self.fail(f"a density in front of {element}, limits, or dm")
+                raise self.fail(
+                    f"limits of the integral, dm, or a density before {element} for an integral over a body,"
+                )
             self.note(f"the density times {element} is read as dm")
             inner = mass
         return Node("call", "integral_over_body", (inner,), self.span(token.start))

@@ -163,9 +163,10 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
 
 
 def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text without the blank in ``ω ˙ =``, and the places of its characters in the source.
+    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the places of its characters in the source.
 
-    Some PDFs have this blank; no letter follows the dot. ``places`` are those of the characters of ``text``.
+    Some PDFs have a blank between a letter and its dot. It is removed only if no letter follows the dot. ``places`` are
+    those of the characters of ``text``.
     """
     dots = "".join(_DOTS)
     gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]

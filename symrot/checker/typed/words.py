@@ -51,9 +51,14 @@ _JOINED = re.compile(
     re.ASCII,
 )
 _LETTER = re.compile(r"[A-Za-z][0-9]*", re.ASCII)
+_WITH_INDEX = re.compile(r"([A-Za-z]{1,3})([A-Za-z]_[A-Za-z0-9]+)", re.ASCII)
+"""A product whose last letter has an index, such as ``EI_1``."""
 
 USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
 """Letters that nearly every book on mechanics uses for a quantity."""
+
+BEFORE_INDEX = USUAL_LETTERS | {"E", "T"}
+"""The letters that may stand in a word before a letter with an index: E and I_1 in ``EI_1``."""
 
 UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
 
@@ -92,6 +97,8 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
     --------
     >>> pieces_of_word("mgh", ()), pieces_of_word("ab", ("a", "b")), pieces_of_word("cos2theta", ())
     ((('m', 'g', 'h'), True), (('a', 'b'), True), (('cos', '2', 'theta'), True))
+    >>> pieces_of_word("EI_1", ("I_1",)), pieces_of_word("EI_1", ())
+    ((('E', 'I_1'), True), ((), False))
     >>> pieces_of_word("ab", ()), pieces_of_word("phi", ()), pieces_of_word("KE", ())
     ((('a', 'b'), False), ((), False), ((), False))
     """
@@ -101,6 +108,10 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         function, number, name, index = joined.groups()
         if (number or name) and not (index and not name):
             return tuple(piece for piece in (function, number, name + (index or "")) if piece), True
+    if with_index := _WITH_INDEX.fullmatch(word):
+        before, last = str(with_index[1]), str(with_index[2])
+        is_product = last in alone and all(letter in alone or letter in BEFORE_INDEX for letter in before)
+        return ((*before, last), True) if is_product else ((), False)
     letters = tuple(_LETTER.findall(word))
     if "".join(letters) != word or len(letters) < 2:
         return (), False
@@ -202,11 +213,12 @@ def split_tokens(tokens: Sequence[Token], words: Mapping[str, Sequence[str]]) ->
     """Yield the tokens with words split into names: m, g, l for ``mgl`` if ``words`` maps mgl to these names."""
     for token in tokens:
         pieces = words.get(token.text, ()) if token.kind == "name" else ()
-        if not pieces or token.end - token.start != len(token.text):
+        has_lowered = bool(pieces) and "_" in pieces[-1] and token.end - token.start == len(token.text) - 1  # EI₁
+        if not pieces or (token.end - token.start != len(token.text) and not has_lowered):
             yield token
             continue
         at, spaced, breaks = token.start, token.spaced, token.breaks
         for piece in pieces:
             kind = "number" if piece.isdigit() else "mark" if piece == "^" else "name"
-            yield Token(kind, piece, at, at + len(piece), spaced, breaks)
+            yield Token(kind, piece, at, min(at + len(piece), token.end), spaced, breaks)
             at, spaced, breaks = at + len(piece), False, False

@@ -278,8 +278,9 @@ def numeric_end(source: str) -> tuple[str, str]:
 def unit_beside_letters(source: str) -> str:
     """Return the first number with a unit, such as "3 m/s^2", in a text with other letters; "" without one.
 
-    Its letters must surely mean a unit, no quantities. They do if the unit has several letters, or if a side is only
-    this number with a unit such as m/s^2, and the other sides have none of these letters.
+    Letters such as m may be quantities instead. They are a unit if one of the typed units has several letters (``kg
+    m^2``). They are also a unit if a side is nothing but a number with a plausible unit of several letters (``3
+    m/s^2``), and none of these letters occurs on the other sides.
 
     Examples
     --------
@@ -308,8 +309,9 @@ def unit_beside_letters(source: str) -> str:
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
     """Return whether a text consists of numbers with ``units``, perhaps with one name for the result on the left.
 
-    ``names`` are the names in it that are no units. ``has_long`` says that a unit has several letters: otherwise the
-    letters may be quantities, so that more is required.
+    ``names`` are the names in it that are no units; at most one is allowed, as in ``T = 2 N m``. If no unit has several
+    letters (``has_long``), the letters may be quantities. Then the units must be plausible if there is a name; without
+    a name, there must be several sides, each with a unit, and no weight ``m g``.
     """
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):

@@ -87,7 +87,8 @@ class UnitInference:
     def define(self, name: str, tree: Node) -> None:
         """Record the dimension of ``name`` from its definition, so that later formulas can use it.
 
-        If the definition is a bare number, its unit may have been left out: the name gets its usual or an unknown unit.
+        The number in ``m = 3`` may lack its unit: the name then gets the unit that is usual for it, or an unknown unit
+        if none is.
         """
         self.place = f"in the definition of {name}"
         value = self.value(tree)
@@ -153,9 +154,10 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: pure numbers if all are 0 and 1, otherwise unknown ones.
+        """Return the dimensions of the entries of a matrix of numbers, whose units may have been left out.
 
-        ``node`` is the matrix, and ``rows`` are the dimensions of its entries if they are pure numbers.
+        A matrix of zeros and ones only, the tree ``node``, consists of pure numbers: ``rows``, its dimensions without
+        any units, are returned. In other matrices each nonzero entry gets an unknown dimension.
         """
         if _is_unit(node):
             return rows
@@ -164,9 +166,10 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, and return it; if not, record a contradiction.
+        """Require that two values have the same dimension, and return it.
 
-        ``words`` is the sentence for it, in which {0} and {1} stand for the two units.
+        If they differ, the contradiction is recorded and the dimension of ``first`` is returned. ``words`` is the
+        sentence for the record, in which {0} and {1} stand for the two units.
         """
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
@@ -200,9 +203,9 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number, and return that dimension; if not, record a contradiction.
+        """Require that a scalar is a pure number, and return the dimension of a pure number in any case.
 
-        ``words`` is the sentence for it, in which {0} stands for the scalar's unit.
+        If it is not, the sentence ``words`` is recorded as a contradiction; {0} stands for the scalar's unit.
         """
         if isinstance(value, tuple):
             raise Unreadable

@@ -83,7 +83,11 @@ def multiply(a: Pair, b: Pair) -> Pair:
 
 
 def divide(a: Pair, b: Pair) -> Pair:
-    """Return a/b for double-double numbers, by long division: three quotients of doubles, each of the rest before."""
+    """Return a/b for double-double numbers, by long division in three steps.
+
+    Each step divides the high part of the remainder by that of b, which gives the next digits of the quotient, and
+    subtracts this partial quotient times b from the remainder.
+    """
     first = a[0] / b[0]
     rest = subtract(a, multiply((first, 0.0), b))
     second = rest[0] / b[0]

@@ -65,8 +65,9 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 def attitude(values: Sequence[Number]) -> list[float]:
     """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86.
 
-    An attitude needs no more digits. Since the low parts are rounded to a coarser grid, arithmetic on arrays
-    (:mod:`symrot.closed_form.batches`) can compute exactly the same doubles.
+    An attitude needs no more digits. Each lo is rounded to a multiple of GRID times the last bit of hi
+    (:func:`on_grid`). Since this is coarser than the last bit of lo, the arithmetic on arrays in
+    :mod:`symrot.closed_form.batches`, which has other rounding errors, arrives at the same doubles as this function.
     """
     result: list[float] = []
     for value in values:
@@ -138,7 +139,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
         if not abs(value) <= LARGEST:
             raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
         if value < least:
-            raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
+            raise InputError(f"{what}: expected numbers of {least:g} or more, got {show(value)}")
     return entries
 
 

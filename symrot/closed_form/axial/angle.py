@@ -1,7 +1,10 @@
 """The angle of rotation about one axis under a constant torque and linear damping, in revolutions modulo 1.
 
-After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with ``x = -decay t``.
-Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay`` is used.
+The angle depends on the initial angular velocity ``rate``, on ``push``, the angular acceleration by the torque, and on
+``decay``, the decay rate by the damping. In this module rate and push are also given in revolutions/s and
+revolutions/s^2. After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with
+``x = -decay t``. Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``
+is used.
 
 The arithmetic depends on the angle. Small angles are computed in doubles, whose relative error is 1e-16. Larger angles
 are computed in double-double numbers (sums of two doubles), with an error of 1e-20 of a revolution. Angles above 1e10
@@ -121,9 +124,11 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle at the times t, modulo one revolution, as double-double numbers.
+        """Return the angle at the times t, modulo one revolution, for ``|decay t|`` of at most dd.NEAR.
 
-        The series is for small ``|decay t|``.
+        The two terms of the angle (see the module's text) are computed in double-double numbers, with the power series
+        of ``(exp(x) - 1 - x)/x^2``, which is accurate for such times only. As everywhere in this class, the angle is
+        that of the rotation times the factor ``share``.
         """
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
@@ -133,10 +138,11 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle at the times t, modulo one revolution, as double-double numbers.
+        """Return the angle at the times t, modulo one revolution, for ``|decay t|`` above dd.NEAR.
 
-        ``decay t`` must not be small: the angle is the sum of a part that grows steadily and a transient part that
-        contains ``exp(-decay t)``.
+        The angle is the sum of a part that grows steadily, at the final angular velocity, and of a transient part with
+        ``1 - exp(-decay t)``. They are computed in double-double numbers; for small ``decay t`` digits would cancel. As
+        everywhere in this class, the angle is that of the rotation times the factor ``share``.
         """
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
@@ -169,9 +175,10 @@ class Turning:
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return ``share`` times the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers.
+        """Return the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers.
 
-        This path serves angles above 1e10 revolutions, and calls with only a few times.
+        It is the angle of rotation times ``share``, the factor that the constructor was called with. This path serves
+        angles above 1e10 revolutions, and calls with only a few times.
         """
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms

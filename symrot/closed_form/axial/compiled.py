@@ -148,9 +148,10 @@ class Constants:
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
         """Return the values of those members of the C struct `axial` (axial.h) that depend on the initial rate, rad/s.
 
-        They are four numbers and the constants of one angle. If the body also rotates across the driven axis
-        (``turned``), this is `lag`, the angle by which the transverse angular velocity rotates in the body; otherwise
-        it is `half`, half the angle of rotation, from which the attitude follows.
+        The first four values are the initial rate, the initial angular acceleration, the final rate and the transient
+        part of the rate. The others are the constants of one angle as a function of time. If the body also rotates
+        across the driven axis (``turned``), this angle is `lag`, by which the transverse angular velocity rotates in
+        the body. Otherwise it is `half`, half the angle of rotation, from which the attitude follows.
         """
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
@@ -169,10 +170,12 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the ratio of `lag` or `half` (see :meth:`moving`), in revolutions, to the angle of rotation, rad.
+        """Return the factor from the angle of rotation, rad, to `half` or `lag`, revolutions, and constants for C.
 
-        The ratio is given as an integer and the number of its bits after the binary point. The third result lists the
-        constants of `lag` or `half` for C that do not depend on the initial state.
+        If ``turned``, it is the factor of `lag` (axial.h), the angle by which the transverse angular velocity rotates
+        in the body; otherwise that of `half`, half the angle of rotation. The factor is the first result divided by 2
+        to the power of the second one, both integers. The third result lists those constants of the angle that do not
+        depend on the initial state.
         """
         turn, bits = _HALF
         if turned:
@@ -187,7 +190,7 @@ class Constants:
         return self._turns[turned]
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
-        """Return the constants and the compiled loop of the motion from one initial state.
+        """Return the motion from one initial state, as the compiled loop for its samples together with its constants.
 
         Parameters
         ----------
@@ -201,17 +204,17 @@ class Constants:
         turned, moving = bool(one or other), self.moving(rates[self.axis], bool(one or other))
         half, lag = ([0.0] * _TURNING, moving[4:]) if turned else (moving[4:], [0.0] * _TURNING)
         constants = record(
-            *self.head(turned), *moving[:4], *half, *lag, *self.shapes(float(one), float(other)),
+            *self.head(turned), *moving[:4], *half, *lag, *self.omega_rows(float(one), float(other)),
             *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
         )  # fmt: skip
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
-    def shapes(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries of the matrix `omega` of axial.h, row by row, for the initial transverse rates.
+    def omega_rows(self, one: Any, other: Any) -> list[Any]:
+        """Return the entries of the matrix `omega` of axial.h, row by row; its product with three numbers is omega_b.
 
-        The rates, rad/s, are ``one`` and ``other``. The matrix maps three numbers to the body components of the angular
-        velocity: the damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
-        body, and the axial rate.
+        The three numbers are the damped cosine and sine of the angle by which the transverse angular velocity has
+        rotated in the body, and the rate about the driven axis. ``one`` and ``other`` are the initial rates, rad/s,
+        about the two axes that follow the driven axis in cyclic order.
         """
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
@@ -239,5 +242,6 @@ def _nearest(top: int, bottom: int) -> float:
         return top / bottom
     except OverflowError:
         raise InputError(
-            "expected a torque, damping and angular velocity whose rates are finite doubles, got rates above 1e308"
+            "expected a smaller torque, damping or initial angular velocity: these give the body an angular velocity "
+            "or acceleration above 1e308 rad/s or rad/s^2, the largest double"
         ) from None

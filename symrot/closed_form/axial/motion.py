@@ -181,8 +181,8 @@ def starts(
 ) -> Callable[[Initial], AxialMotion]:
     """Return a function from an initial state to the motion of one driven body.
 
-    The arguments describe the body and its torque, as for :func:`motion`. The constants that do not depend on the
-    initial state are computed once, when this function is called.
+    The arguments describe the body and its torque, as for :func:`motion`. A call of ``starts`` computes the constants
+    that do not depend on the initial state; the function that it returns computes the others.
     """
     body = Driven(inertia, axis, torque, damping, damping_across)
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
@@ -206,9 +206,9 @@ class Driven:
         self.driven = push / own, drag / own
         if max(map(abs, (*self.driven, *self.turning))) > LARGEST:
             raise InputError(
-                f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
-                f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
-                f"{float(slowing)!r} N m s"
+                f"expected torque and damping of at most {LARGEST:g} times the moments of inertia, got moments "
+                f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} N m s "
+                f"about its axis and {float(slowing)!r} N m s across it"
             )
         driving = [x.as_integer_ratio() for x in (push, drag, slowing)]
         self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)

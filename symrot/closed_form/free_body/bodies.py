@@ -66,11 +66,12 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return the components of n angular velocities along a body's principal axes, and the defects of the motions.
+    """Return n angular velocities along a body's principal axes, the defects of the motions, and the doubtful rows.
 
-    The results have the shapes (n, 6) and (n, 2): hi and lo of each number. The third result lists the indices of the
-    rows whose last digit is in doubt, which the caller must compute exactly. ``body`` is a result of
-    :func:`fixed_body`; the module's text defines the defect.
+    The angular velocities have the shape (n, 6), the defects |L|^2 - 2 T I_mid the shape (n, 2): hi and lo of each
+    number. A row whose last digit is not certain is doubtful: its index is in the third result, and the caller must
+    compute it exactly. ``omega`` holds the angular velocities in the body, shape (n, 3); ``body`` is a result of
+    :func:`fixed_body`.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -80,10 +81,11 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of the rows in doubt.
+    """Return the defects |L|^2 - 2 T I_mid of free bodies, and the indices of the doubtful rows.
 
-    Rows are in doubt if their last digit is not certain; the caller must compute them exactly. ``moments`` are
-    principal moments and ``omega`` angular velocities along the principal axes, both of shape (n, 3).
+    The defects have the shape (n, 2): the doubles hi and lo, whose sum is the defect. A row is doubtful if the last
+    digit of lo is not certain; the caller must compute it exactly. ``moments`` are principal moments and ``omega``
+    angular velocities along the principal axes, both of shape (n, 3).
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)

@@ -176,9 +176,9 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect of the motion with the integer body rates ``w``, as two doubles whose sum it is.
+        """Return the defect of the motion with the integer body rates ``w``, as two doubles (hi, lo) whose sum it is.
 
-        The defect is |L|^2 - 2 T I_mid, see :class:`Defect`.
+        The defect is |L|^2 - 2 T I_mid, divided by the square of (largest moment times largest rate).
         """
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z

@@ -231,10 +231,12 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return the list I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a motion.
+    """Return two results: the list I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid of a motion.
 
-    Both are computed from exact fractions. L is the angular momentum, T the kinetic energy and I_mid the middle moment
-    of inertia; the sign of the defect tells around which axis the motion goes.
+    Both are computed from exact fractions: ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, whose
+    sums are the principal moments and the angular velocity along the principal axes. Rates that are zero in ``w``, the
+    same angular velocity after rounding, are left out. L is the angular momentum, T the kinetic energy and I_mid the
+    middle moment of inertia; the sign of the defect tells around which axis the motion goes.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
@@ -253,9 +255,9 @@ def _canonical(
 ) -> tuple[list[int], list[int], int]:
     """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2.
 
-    The formulas hold for an order of the moments that depends on the sign of the defect. ``moments`` and ``w`` are the
-    moments and the initial angular velocity along the principal axes; ``differences`` and ``defect`` are the results of
-    :func:`_differences`.
+    ``moments`` and ``w`` are the moments and the initial angular velocity along the principal axes. ``differences`` and
+    ``defect`` (|L|^2 - 2 T I_mid) are the results of :func:`_differences`. The formulas need I2 between I1 and I3: I3
+    is the largest moment if the defect is positive or zero, and the smallest if it is negative.
     """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2

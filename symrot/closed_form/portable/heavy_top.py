@@ -160,10 +160,12 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the values of the terms in the theta series of alpha (i = 0) or beta (i = 1), at ``place``.
+        """Return the terms of a theta series at the argument ``place`` (an angle v or z in rad), and their derivatives.
 
-        A term is a sine or cosine, or a hyperbolic one times a power of the nome. There are four lists, with one value
-        for each term: of the real part, of the imaginary part, and of their derivatives.
+        The Cayley-Klein parameters alpha and beta of the attitude are quotients of theta series; the series is that of
+        alpha if i = 0, that of beta if i = 1. Its terms are sin(n z) and cos(n z) in the "circular" regime, otherwise
+        sinh(n v) and cosh(n v) times a power of the nome. There are four lists, with one value for each term: of the
+        real part, of the imaginary part, and of their derivatives.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -189,9 +191,13 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series, so that alpha and beta agree with the initial state.
+        """Set the constant factors of the theta series of alpha and beta, so that they agree with the initial state.
 
-        If alpha or beta is nearly zero at the start, its rate is used instead.
+        ``start`` are the Cayley-Klein parameters alpha and beta of the initial attitude. If one of the two series is
+        nearly zero at the start, the factor is computed from the time derivative of that parameter instead, which
+        follows from the initial angular velocity: ``across``, w1 + i w2, and ``spin``, w3. The other arguments are
+        results of :meth:`_circular` or :meth:`_hyperbolic`. The results are set as attributes (``terms``, ``kappas``,
+        ``speed``, ``attitude``, ``omega``).
         """
         alpha, beta = start
         initial_rates = [
@@ -289,7 +295,9 @@ class PortableHeavyTop:
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
     """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s.
 
-    The arguments are M (weight times distance), 2 (E - M), D and l. Nearly equal roots are made equal.
+    The cubic is (ds/dt)^2 of a heavy top with transverse moment 1, for s = 1 - cos theta. M is the weight times the
+    distance of the centre of mass (``pull``), E the energy without that of the spin (``twice`` is 2 (E - M)), l the
+    angular momentum along the axis (``spin``), and D is L_z - l (``d``). Nearly equal roots are made equal.
     """
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]

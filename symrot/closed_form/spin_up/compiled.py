@@ -70,14 +70,18 @@ def functions() -> _Functions:
 class Compiled:
     """The constants of one motion, computed by C, and the compiled loop over its samples.
 
-    At times beyond ``longest``, s, the number of revolutions may be too large for double-double numbers.
-
     Parameters
     ----------
     axis : 0, 1 or 2
         Index of the body axis about which the torque acts.
     numbers : 20 floats
         The numbers that ``symrot_spin_up_prepare`` takes.
+
+    Attributes
+    ----------
+    longest : float
+        The time, s, beyond which the number of revolutions may be too large for double-double numbers. Samples at later
+        times must be computed in integers (:mod:`symrot.closed_form.spin_up.integers`).
 
     Raises
     ------
@@ -101,7 +105,8 @@ class Compiled:
         place = ctypes.addressof(constants)
         if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError(
-                "expected a C compiler that rounds every operation separately, got one that combines some"
+                "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
+                "use another compiler"
             )
         return constants, place, table
 

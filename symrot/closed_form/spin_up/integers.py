@@ -1,11 +1,15 @@
-"""A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
+r"""A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
 Resonance is the time at which the axial component Omega of the angular velocity, in axes that rotate with its
-transverse component, passes through zero (:mod:`symrot.closed_form.spin_up.motion`). The rotation far from resonance
-(:mod:`~symrot.closed_form.spin_up.off_resonance`) and the rotation near resonance
-(:mod:`~symrot.closed_form.spin_up.resonance`) are multiplied at the boundary. This module computes, one by one, the
-samples whose number of revolutions is too large for double-double numbers. Without a C compiler it also computes the
-constants for NumPy. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+transverse component, passes through zero (:mod:`symrot.closed_form.spin_up.motion`). A motion has up to three parts:
+far before resonance, near it (\|x\| < NEAR for the scaled Omega), and far after it. The rotation of each far part comes
+from :mod:`~symrot.closed_form.spin_up.off_resonance`, that of the near part from
+:mod:`~symrot.closed_form.spin_up.resonance`; the attitude is the product of these rotations, each from one boundary to
+the next.
+
+This module computes, one by one, the samples whose number of revolutions is too large for double-double numbers.
+Without a C compiler it also computes the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof:
+``derivations/driven_rotation.md``.
 """
 
 import math
@@ -149,10 +153,10 @@ class Integers:
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants with which NumPy computes samples.
+        """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`.
 
-        If ``near`` is false, all samples lie far from resonance, on the side of the start. The constants for the other
-        side and for samples near resonance are then zero.
+        If ``near`` is false, all samples lie far from resonance, and on the same side of it as the start of the motion.
+        The constants for the far part on the other side and for the near part are then zero.
         """
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
@@ -179,7 +183,7 @@ class Integers:
     def longest(self) -> float:
         """The time, s, beyond which there may be too many revolutions for double-double numbers.
 
-        Integers compute the samples there.
+        Samples at later times are computed in integer arithmetic, which is slower.
         """
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)

@@ -1,19 +1,19 @@
 """Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
 
 In axes in which a body rotates at ``(kappa, 0, x)``, where ``x`` is the scaled time, a vector ``n`` at rest in space
-obeys ``n' = n x (kappa, 0, x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``,
-``v = 1/r^2`` and
+obeys ``n' = n x (kappa, 0, x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``, ``v =
+1/r^2`` and
 
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
-the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``,
-so each coefficient of a series follows from the previous coefficients. The coefficients are ordered by powers of
-``v^2``; the coefficient of each power is a polynomial in ``kappa^2 v``, which is at most 1. The series do not converge,
-but for x above :data:`NEAR`, or kappa above :data:`WIDE`, their terms fall below 1e-18 before they grow.
+the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 g`` with ``g = 3 c + 2 v c'``, and ``2 (1 - kappa^2 v) b' =
+kappa^2 (b + c)``, so each coefficient of a series follows from the previous coefficients. The coefficients are ordered
+by powers of ``v^2``; the coefficient of each power is a polynomial in ``kappa^2 v``, which is at most 1. The series do
+not converge, but for x above :data:`NEAR`, or kappa above :data:`WIDE`, their terms fall below 1e-18 before they grow.
 
-In axes whose third axis is the axis of rotation, the first components of ``n`` are
-``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle of rotation about ``n`` exceeds the integral of ``r`` by
-``delta = (x/r) e(v)``.
+In axes whose third axis is the axis of rotation, the first two components of ``n`` are ``(kappa/r) (x/r) v^2 g`` and
+``(kappa/r) v c``. The angle of rotation about ``n`` exceeds the integral of ``r`` by ``delta``, which defines the
+function e: ``delta = (x/r) e(v)``.
 
 Source: DLMF 12.9 and 12.10, for the parabolic cylinder functions whose modulus and phase these series are. Proof:
 ``derivations/driven_rotation.md``.
@@ -46,10 +46,11 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """The functions g, c and e of the asymptotic series of one motion, as polynomials in ``y = v radius2``.
+    """The functions v^2 g, v c and e of the module's text for one motion, as polynomials in ``y = radius2/r^2``.
 
-    The coefficients begin with the lowest power, and 0 <= y <= 1. If the series is accurate for every x (``wide``),
-    ``radius2`` is kappa^2; otherwise it is the smallest r^2 for which the series is accurate.
+    ``r^2 = x^2 + kappa^2`` is the squared angular velocity in the scaled time x, so that 0 <= y <= 1. If kappa is large
+    (``wide``), the series is accurate at every time x, and ``radius2`` is kappa^2. Otherwise it is accurate for x above
+    NEAR, and ``radius2`` is NEAR^2 + kappa^2. The coefficients begin with the lowest power.
     """
 
     wide: bool
@@ -86,9 +87,11 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return the values of the function e (see the module's text) at the Chebyshev points.
+    """Return the values of the function e at the Chebyshev points; ``(x/r) e`` is the angle delta of the module's text.
 
-    ``h`` holds the coefficients of the function h in delta' = kappa^2 v^(5/2) h.
+    ``h`` holds the coefficients, as a polynomial in y, of the function h in the derivative ``delta' = kappa^2 v^(5/2)
+    h`` by x, with ``v = 1/r^2``. The arguments ``share`` and ``v`` are kappa^2/radius2 and 1/radius2 (see
+    :class:`Series`).
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
@@ -104,9 +107,10 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the asymptotic series of a motion with kappa^2 = ``kappa2`` and 1/kappa^2 = ``inverse``.
+    """Return the asymptotic series of the rotation of a driven body with kappa^2 = ``kappa2``, in inverse powers of r.
 
-    One of the two may be zero, for a number outside the range of doubles.
+    kappa is the transverse angular velocity in the scaled time (see the module's text). ``inverse`` is 1/kappa^2; it is
+    passed too because one of the two may be too small for a double, and is then 0.
     """
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2

@@ -104,8 +104,9 @@ class _Jet:
     """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
     In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}`` is the array of all coefficients of the series
-    (for a state the array is ``x[..]``). A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for
-    all other orders.
+    (for a state the array is ``x[..]``). The coefficients of order n of all series are computed before those of order n
+    + 1. The C statements differ for n = 0, n = 1 and larger n; the argument ``phase`` of the methods is then ``first``,
+    ``second`` and ``later``.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -177,11 +178,12 @@ class _Jet:
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a slot, which is a sum of convolutions.
+        """Return the C expression for coefficient n of slot ``number``, which is a sum of convolutions.
 
-        ``sums`` is the first letter of the C variables with the sums over known coefficients; the newest terms are
-        added. The result is the sum of two independent chains of operations, so that neither waits for all newest
-        coefficients.
+        A convolution is ``sum(u[k] v[n-k], k = 0..n)``. For the phase ``later``, the variable with the letter ``sums``
+        and the slot's number, such as ``a3``, holds the sum over k = 1..n-1; the terms k = 0 and k = n are added. They
+        use coefficients n, which have just been computed. The result is the sum of two independent chains of
+        operations, so that a part of it need not wait for the last of them. ``phase`` depends on n: see the class.
         """
         older = f"{sums}{number}" if phase == "later" else ""
         newer = ""
@@ -237,8 +239,8 @@ class _Jet:
     def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
         """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``.
 
-        ``phase`` is ``first``, ``second`` or ``later`` (see the class), ``sums`` the letter of the variables with known
-        sums.
+        ``phase`` is ``first``, ``second`` or ``later`` (see the class). ``sums`` is ``a`` or ``b``, the first letter of
+        the C variables with the sums over earlier coefficients (:meth:`slot`).
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
@@ -407,7 +409,11 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k that adds the products u[k] v[n-k] to the sums, two values of k at a time."""
+        """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time.
+
+        The sums are the variables ``a{i}`` and ``b{i}``. ``terms`` holds (slot i, sign, convolution). ``left`` and
+        ``right`` are the indices of the series u and of the series v that occur in the convolutions, each once.
+        """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):

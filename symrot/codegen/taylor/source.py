@@ -93,9 +93,10 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writes the C function that computes the jet, all Taylor coefficients, for one layout of series in vectors.
+    """Writes the C function that computes the jet, all Taylor coefficients, of series arranged in vectors (``layout``).
 
-    A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for all other orders.
+    The coefficients of order n of all series are computed before those of order n + 1. The C statements differ for n =
+    0, n = 1 and larger n; the argument ``phase`` of the methods is then ``first``, ``second`` and ``later``.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -134,9 +135,10 @@ class _Jet:
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression of the newest coefficients of a pack, collected from the variables of rows.
+        """Return the C expression of the coefficients of order n of a pack, from the variables ``r{i}`` that hold them.
 
-        Row i has the variable ``r{i}``; the four series of a pack may lie in several rows.
+        ``r{i}`` is the vector of the coefficients, just computed, of row i: of the four series that are computed
+        together. A pack is a vector of any four series, so that its elements may come from several rows.
         """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
@@ -152,10 +154,11 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of column ``index``, a vector of four convolutions.
+        """Return the C expression for coefficient n of the convolutions in column ``index``, a vector of four numbers.
 
-        It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the terms k = 0 and k =
-        n. An empty text stands for zero.
+        A convolution is ``sum(a[k] b[n-k], k = 0..n)``. The sum over k = 1..n-1 is in the variable with the letter
+        ``sums`` and the column's number, such as ``a3``; the terms k = 0 and k = n are added. ``phase`` depends on n:
+        see the class. An empty text stands for zero.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if phase == "later" else ""
@@ -412,8 +415,11 @@ class _Jet:
             lines.append("}")
         return lines
 
-    def between(self) -> list[str]:
-        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
+    def completed_sums(self) -> list[str]:
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
+
+        They add the terms a[1] b[n] and a[n] b[1]; the loop before has added the others.
+        """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
@@ -439,7 +445,7 @@ class _Jet:
             "{", *_indented(orders["1"]), "}",
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
-                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+                        *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
         places = {name: f"p[{i}]" for i, name in enumerate(self.parameters)}

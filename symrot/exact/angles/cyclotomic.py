@@ -28,14 +28,23 @@ Beyond it a constant stays a symbol."""
 
 
 def order(denominator: int) -> int:
-    """Return the even N for which cosines and sines of all k pi/denominator are polynomials in 2 cos(pi/N)."""
+    """Return the smallest even multiple N of ``denominator``.
+
+    The cosines and sines of all k pi/denominator are then polynomials in 2 cos(pi/N).
+
+    Examples
+    --------
+    >>> order(7), order(18)
+    (14, 18)
+    """
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether multiples of pi/denominator are read as polynomials in 2 cos(pi/N) with N = ``order(..)``.
+    """Return whether sines and cosines of multiples of pi/denominator are read as polynomials in g = 2 cos(pi/N).
 
-    False if the degree of this number over the rationals exceeds ``LARGEST_DEGREE``.
+    N is ``order(denominator)``. The result is False, and these sines and cosines stay symbols, if the minimal
+    polynomial of g over the rationals has a degree above ``LARGEST_DEGREE``: the polynomials would be too long.
     """
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
@@ -74,9 +83,15 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 
 
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
-    """Return (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``, two whole numbers.
+    """Return whole numbers (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``.
 
-    So both follow from :func:`doubled_cosine`. The product ``n * turns`` must be a whole number.
+    With k and l, :func:`doubled_cosine` gives the cosine and the sine of ``turns*pi`` as polynomials in 2 cos(pi/n).
+    The product ``n * turns`` must be a whole number.
+
+    Examples
+    --------
+    >>> multiples(Fraction(2, 7), 14)
+    (4, 3)
     """
     k = int(turns * n)
     return k, n // 2 - k

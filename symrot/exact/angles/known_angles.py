@@ -20,9 +20,9 @@ def is_bound(atom: Expr, coefficient: Fraction) -> bool:
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return the part of an angle without terms such as ``2*asin(u)``, whose cosine and sine are known by formulas.
+    """Return an angle without those of its terms whose cosine and sine are known by formulas, such as ``2*asin(u)``.
 
-    :func:`is_bound` decides which terms these are.
+    :func:`is_bound` decides which terms are left out. The angle ``x + 2*asin(u)`` gives x.
     """
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
@@ -41,8 +41,16 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines of angles whose multiples add up to ``coefficient * atom``, such as ``3/2*asin(u)``.
+    """Return the expressions from which cosine and sine of the angle ``coefficient * atom`` follow by sum formulas.
 
-    The roots in them must be variables of the ring before the angle can be read.
+    The angle is split into whole multiples of the atom halved 0, 1, 2 or 3 times; the result has the cosine and sine of
+    each of these halved angles. The polynomial ring must have variables for the roots in them.
+
+    Examples
+    --------
+    >>> from sympy import asin, symbols
+    >>> u = symbols("u", real=True)
+    >>> parts_of(asin(u), Fraction(2))  # a multiple of asin(u), which is not halved
+    [sqrt(1 - u**2), u]
     """
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

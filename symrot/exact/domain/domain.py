@@ -14,9 +14,9 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
     """Return what must not be zero in the formulas of a ring, as pairs (divisor as written, one of its factors).
 
-    Each factor of a divisor has a pair; a factor that is a root is replaced by its radicand. Factors whose numbers are
-    in ``granted`` are left out, and so are those that cannot be zero. Arguments of logarithms and ``x^2 + y^2`` of
-    ``atan2(y, x)`` count too.
+    Each factor of a divisor has a pair; a factor that is a root is replaced by its radicand. Left out are factors that
+    cannot be zero, and those whose index in ``ring.ratios.factors`` is in ``granted``. Arguments of logarithms and
+    ``x^2 + y^2`` of ``atan2(y, x)`` count too.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []

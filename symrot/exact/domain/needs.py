@@ -125,7 +125,8 @@ def _granted(need: Need) -> bool:
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
     """Yield every subexpression of formulas once, without recursion.
 
-    A function of time or another free number (:func:`is_leaf`) is not split.
+    Symbols, functions of time such as f(t), their time derivatives and entries of matrices are not split
+    (:func:`is_leaf`): each is yielded as a whole, because each can have any real value.
     """
     stack, seen = list(formulas), set()
     while stack:

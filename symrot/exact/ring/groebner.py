@@ -36,14 +36,14 @@ def groebner_basis(
     ring : PolyRing
         Ring over a field, with any order of monomials.
     most_products : int
-        The budget.
+        The most products of two terms that may be computed. This count limits the time equally on all machines.
     spent : list of one int, optional
-        The part of the budget used so far; several calls may share it.
+        The number of products computed so far, which is increased; several calls may share it.
 
     Raises
     ------
     TooLarge
-        If the budget is exhausted.
+        If more than ``most_products`` products are needed.
     """
     return _Basis(ring, most_products, [0] if spent is None else spent).of(polynomials)
 

@@ -107,9 +107,10 @@ def sums_of_logarithms(products: Mapping[Expr, Product]) -> dict[Expr, Expr]:
 
 
 def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
-    """Return the signs, 1 or -1, of those factors whose sign follows because all ``products`` are positive.
+    """Return the signs, 1 or -1, of the factors in ``products`` that follow because all products are positive.
 
-    They are arguments of logarithms. If a b and a are positive, so is b. Factors of unknown sign are absent.
+    The products are the arguments of logarithms, each split into factors. If a b and a are positive, so is b. Factors
+    whose sign does not follow are absent.
     """
     factors = {factor for product in products for factor in product.powers}
     signs = {factor: sign for factor in factors if (sign := _sign(factor))}

@@ -1,9 +1,11 @@
 """Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
-stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials. Each factor
-is stored with the first divisor that contains it, as the formula writes this divisor: the formula is defined only where
-the divisor is not zero.
+stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials.
+
+A formula is defined only where its divisors are not zero, and a message about this must show a divisor as the user
+wrote it. So each factor is stored together with a divisor in the formulas that contains it, the one that was read
+first.
 """
 
 from collections.abc import Callable, Sequence
@@ -173,7 +175,10 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial with integer coefficients at the point of :meth:`_may_divide`."""
+        """Return the value of a polynomial with integer coefficients at ``self.point``, which has integer coordinates.
+
+        :meth:`_may_divide` compares such values to see quickly that one polynomial does not divide another.
+        """
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()

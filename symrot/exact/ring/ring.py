@@ -1,7 +1,8 @@
 """Formulas as fractions of polynomials, in a ring of polynomials made for the formulas of one problem.
 
-The generators are, highest first: roots (outer before inner), sines, symbols and functions of time, exponentials of
-base exponents, and cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order of
+The generators are, highest first: roots (outer before inner), sines, symbols and functions of time, exponentials, and
+cosines. Sines, cosines and exponentials have base angles as arguments, of which all angles in the formulas are whole
+multiples: x/6 for x/2 and x/3. Inverse trigonometric functions are angles whose sine and cosine are known. The order of
 monomials is lexicographic, so each relation
 
     root:    g^n = P           circle:    s^2 = 1 - c^2           hypothesis:    q0^2 = 1 - q1^2 - q2^2 - q3^2
@@ -235,18 +236,19 @@ class FormulaRing:
                 self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
-        """Return the factors of ``base``, which is under a root with the given index, in lowest terms.
+        """Return the factors of ``base``, an expression under a root with the given ``index`` (2 for a square root).
 
-        Hypotheses that contain no roots are used to shorten it.
+        They are factors of ``base`` as a fraction in lowest terms. Those hypotheses of this ring that contain no roots
+        are used to shorten it: with q0^2 + q1^2 = 1, the radicand 1 - q1^2 becomes q0^2.
         """
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
         radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return those square roots that are products of other roots of the ring, each with its expression by these.
+        """Return a map from each square root that is a product of other roots of the ring to its expression by these.
 
-        With the roots of a, b and a b, the last is the product of the others.
+        In a ring with the square roots of a, b and a*b, the third is the product of the other two.
         """
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
@@ -269,10 +271,12 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return the N for which sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0.
+        """Return an even N such that the sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0.
 
-        The result is 0 if N would be too large, or if all constant angles are multiples of pi/24, whose sines and
-        cosines are square roots. If it is not 0, the base angle of constant angles is removed from ``bases``.
+        N is as small as the constant angles of this ring allow (:func:`symrot.exact.angles.cyclotomic.order`). The
+        result is 0 if N would be too large, or if all constant angles are multiples of pi/24, whose sines and cosines
+        are square roots. If it is not 0, pi is removed from ``bases``, which lists the angles with sines and cosines of
+        their own as variables.
         """
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
@@ -330,10 +334,11 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the variables that are algebraic numbers, if relations may hold that the ring does not know.
+        """Return a map from the index of each variable that is an algebraic number, such as sqrt(2), to this number.
 
-        They are given as a map from index to number. Between square roots of primes there are no further relations; the
-        result is empty then, and also if one of the numbers is imaginary.
+        It is used to remove terms whose coefficient, a polynomial in such numbers, is zero although the relations of
+        the ring (``rules``) do not say so. The result is empty if they say all: if there are fewer than two numbers, or
+        if all of them are square roots of primes. It is also empty if one of the numbers is imaginary.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -561,9 +566,9 @@ def _is_of_real(logarithm: Expr) -> bool:
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots in the expression of a dependent root by others.
+    """Return the roots by which a dependent root is expressed: sqrt(a) and sqrt(b) for sqrt(a*b).
 
-    The list is empty if ``dependence`` is None, which means that the root is independent.
+    ``dependence`` is this expression. It is None if the root is independent; the result is then empty.
     """
     if dependence is None:
         return []

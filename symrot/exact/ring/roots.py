@@ -1,11 +1,14 @@
 """Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
 
-``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and rational numbers are written by square roots of primes, so
-that the generator of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root as
-absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and the root of a product of other radicands gets no generator
-(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, such as nested roots, have one
-generator each. Then equations that follow from the relations are true, but others may be true on one branch of the
-roots; :func:`symrot.exact.decide.decide` returns "undecided" for these unless it finds a counterexample.
+``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and square roots of rational numbers as products of square roots
+of primes. So the generator g of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares
+leave a root as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``. If the formulas have sqrt(a), sqrt(b) and sqrt(a*b), the
+third gets no generator: it is written as the product of the other two (:mod:`symrot.exact.ring.radicands`).
+
+Roots that depend on each other in other ways, such as nested roots, have one generator each. An equation that follows
+from the relations of these generators is true. One that does not follow may still be true, because a root is only one
+of the branches that its relation allows; :func:`symrot.exact.decide.decide` returns "undecided" for such an equation
+unless it finds a counterexample.
 """
 
 from collections.abc import Callable, Iterable
@@ -60,8 +63,9 @@ class Radicand:
     """A radicand split into factors: ``content * above / below * product(factor^(2 n) of outside)``.
 
     ``content`` is a rational >= 0; ``above`` and ``below`` are primitive polynomials over the integers in canonical
-    form, and ``below`` is 1 under a square root; no factor of ``outside`` is negative. ``loose`` is true if such a
-    factor may be zero where ``above`` is negative.
+    form, and ``below`` is 1 under a square root. ``outside`` has the pairs (factor, n), whose factors are never
+    negative and leave the root. ``loose`` is True if one of these factors may be zero where ``above`` is negative:
+    there the radicand is zero and its root is real, although the root of ``above`` is not.
     """
 
     content: Rational
@@ -73,10 +77,12 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``.
+    r"""A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``.
 
-    A factor of ``outside`` is an absolute value, which is a root too, or an expression that is never negative. A
-    ``loose`` radical is real at some points where one of its roots is not real but a factor is zero.
+    ``roots`` are the roots that stay, ``below`` is the denominator, and ``outside`` has pairs (factor, n): the factor
+    is an absolute value, which is a root too, or an expression that is never negative. In sqrt(x^2 y), sqrt(y) is a
+    root and (\|x\|, 1) is outside. ``loose`` is True if a factor of ``outside`` may be zero where one of ``roots`` is
+    not real, as at x = 0, y = -1: there the whole power is real.
     """
 
     base: Expr
@@ -89,7 +95,7 @@ class Radical:
 
     @property
     def generators(self) -> tuple[Root, ...]:
-        """All roots that the fractional power contains, absolute values included."""
+        """The roots that are variables of the ring for this power: ``roots``, and absolute values in ``outside``."""
         return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
     @property

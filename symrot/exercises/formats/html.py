@@ -104,7 +104,11 @@ def _inline_display(latex: str) -> str:
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return the data with which the script of the page grades numbers, by question (``1a``): answer, slips, unit."""
+    """Return what the script of the page needs to grade numbers: for each question (``1a``) the answer, its unit, and
+    slips.
+
+    A slip is the wrong number that a typical mistake gives, with a hint at this mistake.
+    """
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,

@@ -138,7 +138,11 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
 
 
 def _plain(text: str) -> str:
-    """Return a typed formula in the checker's language: Greek letters spelled out, ``dphi`` for rates, ``acos``."""
+    """Return a typed formula in the checker's language.
+
+    Greek letters are spelled out, rates are written as ``dphi`` (for ``phi_dot`` or a letter with a dot), and inverse
+    functions as ``acos`` (for ``arccos``).
+    """
     text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
     for letter, name in GREEK.items():
         text = text.replace(f"{letter}\u0307", f" d{name}")
@@ -151,7 +155,8 @@ def _plain(text: str) -> str:
 def _split(match: re.Match[str], known: Collection[str]) -> str:
     """Return a ``known`` name unchanged; write several names without a space as a product, ``mgl`` -> ``m*g*l``.
 
-    ``match`` is a name in the student's formula, with a power or a division sign beside it, which are respected.
+    ``match`` is a name in the student's formula, with a division sign before it or a power after it, if any. The power
+    belongs to the last name, and a divisor is put in brackets: ``/mgl^2`` -> ``/(m*g*l^2)``.
     """
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)

@@ -19,7 +19,9 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return the angles and rates that occur in ``formulas`` as given quantities with possible numbers."""
+    """Return the angles and rates that occur in ``formulas`` as given quantities, each with the numbers to draw it
+    from.
+    """
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(

@@ -18,7 +18,7 @@ from symrot.planning.general_structure import switched
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
-__all__ = ["ATTITUDE", "Variable", "difference", "read_variables", "require_smooth"]
+__all__ = ["ATTITUDE", "STEP", "Variable", "difference", "groups_of", "read_variables", "require_smooth", "slopes"]
 
 ATTITUDE = "attitude"
 MOST_VARIABLES = 100
@@ -98,6 +98,17 @@ def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
     return variables
 
 
+def groups_of(variables: Sequence[Variable]) -> dict[str, tuple[int, ...]]:
+    """Return the numbers, from 0, of the variables that belong to each requested name.
+
+    For the names omega and weight it is ``{"omega": (0, 1, 2), "weight": (3,)}``.
+    """
+    groups: dict[str, tuple[int, ...]] = {}
+    for place, variable in enumerate(variables):
+        groups[variable.key] = (*groups.get(variable.key, ()), place)
+    return groups
+
+
 def _variables(scene: Scene, key: str) -> Iterator[Variable]:
     if key == ATTITUDE:
         yield from (Variable(key, f"{key}_{i + 1}", "rad", Fraction(0), None, i) for i in range(3))
@@ -173,26 +184,39 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
     InputError
         If the scene is not valid on either side of the variable's value, or if a number is not smooth there.
     """
-    step = abs(variable.value) * STEP if variable.value else STEP
-    first, second = (_quotient(scene, variable, numbers, size) for size in (step, 2 * step))
-    for name, slope in first.items():
-        if abs(slope - second[name]) > AGREEMENT * max(abs(slope), abs(second[name])):
+    moved = variable.moved
+    assert moved is not None
+
+    def values(change: Fraction) -> Numbers:
+        return numbers(moved(change) if change else scene)
+
+    return slopes(values, abs(variable.value) * STEP if variable.value else STEP, variable.name)
+
+
+def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
+    """Return the derivatives, by a variable, of numbers that depend on it; those that are zero are left out.
+
+    ``values`` takes a change of the variable, 0 or one or two times ``step`` up or down, and returns exact numbers by
+    name. ``name`` is the variable, for messages. The errors are those of :func:`difference`, which this function does
+    for the numbers of a scene.
+    """
+    first, second = (_quotient(values, size, name) for size in (step, 2 * step))
+    for each, slope in first.items():
+        if abs(slope - second[each]) > AGREEMENT * max(abs(slope), abs(second[each])):
             raise InputError(
-                f"sensitivities: {name} of the equations does not depend smoothly on {variable.name} at its value"
+                f"sensitivities: expected {name} with a value at which the equations have a derivative, but their "
+                f"constant {each} has a kink or a jump there; change the value slightly"
             )
-    return {name: slope for name, slope in first.items() if slope}
+    return {each: slope for each, slope in first.items() if slope}
 
 
-def _quotient(
-    scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers], step: Fraction
-) -> dict[str, Fraction]:
+def _quotient(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
     """Return difference quotients of the second order, by name: central ones, or one-sided ones at a limit of validity.
 
-    ``numbers`` maps a scene to exact numbers by name, and ``step`` is the change of the variable. A one-sided quotient
-    uses the scenes at 0, 1 and 2 steps to one side; it is needed where the scene is not valid on the other side, for
-    example for a negative mass. If neither side is valid, InputError is raised.
+    ``values`` maps a change of the variable ``name`` to exact numbers by name, and ``step`` is the change. A one-sided
+    quotient uses the changes by 0, 1 and 2 steps to one side; it is needed where the scene is not valid on the other
+    side, for example for a negative mass. If neither side is valid, InputError is raised.
     """
-    assert variable.moved is not None
     schemes: tuple[dict[int, Fraction], ...] = (
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},
         {0: Fraction(-3, 2), 1: Fraction(2), 2: Fraction(-1, 2)},
@@ -201,13 +225,13 @@ def _quotient(
     refusal: InputError | None = None
     for weights in schemes:
         try:
-            values = {place: numbers(variable.moved(place * step) if place else scene) for place in weights}
+            points = {place: values(place * step) for place in weights}
         except InputError as reason:
             refusal = refusal or reason
             continue
-        names = next(iter(values.values()))
+        names = next(iter(points.values()))
         return {
-            name: sum((weight * values[place][name] for place, weight in weights.items()), Fraction(0)) / step
-            for name in names
+            each: sum((weight * points[place][each] for place, weight in weights.items()), Fraction(0)) / step
+            for each in names
         }
-    raise InputError(f"sensitivities: expected a scene that stays valid if {variable.name} changes, got {refusal}")
+    raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")

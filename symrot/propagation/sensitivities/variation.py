@@ -2,17 +2,18 @@
 
 The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
 in common steps. Its equations assume nothing about the numbers of the scene that a variable can change:
-a derivative by a moment of inertia needs the equations of a body without symmetry. A column consists
-of the derivatives by one variable. For the integration it is multiplied by a power of two near the size of the
-variable, so that it is about as large as the states.
+a derivative by a moment of inertia needs the equations of a body without symmetry. The derivatives of all states by one
+variable are a column of the matrix of derivatives. For the integration each column is multiplied by a power of two near
+the size of its variable, so that it is about as large as the states.
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import frexp, ldexp
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,13 +29,31 @@ from symrot.planning.rules import UNIT_FIELDS, pattern
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
-from symrot.propagation.sensitivities.variables import Variable, difference, read_variables, require_smooth
+from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
-__all__ = ["transition_matrix", "variation"]
+__all__ = [
+    "AT_ONCE",
+    "ORDER",
+    "RATES",
+    "SMALL",
+    "STATES",
+    "TOLERANCE",
+    "TRIES",
+    "Column",
+    "columns_of",
+    "motion_library",
+    "rates_of",
+    "rotation_slopes",
+    "small_rotation",
+    "structure_of",
+    "transition_matrix",
+    "variation",
+    "variation_source",
+]
 
 Floats = NDArray[np.float64]
 STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
@@ -71,20 +90,17 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     """
     require_smooth(scene)
     variables = read_variables(scene, keys)
-    columns = _columns(scene, variables)
+    columns = columns_of(scene, variables)
     values, slopes = _follow(scene, columns, times)
     q = values[:, RATES:]
-    groups: dict[str, tuple[int, ...]] = {}
-    for place, variable in enumerate(variables):
-        groups[variable.key] = (*groups.get(variable.key, ()), place)
     quaternion = slopes[:, RATES:]
     return Sensitivities(
         tuple(variable.name for variable in variables),
         tuple(variable.unit for variable in variables),
-        groups,
+        groups_of(variables),
         slopes[:, :RATES],
         quaternion,
-        _rotation(q, quaternion),
+        small_rotation(q, quaternion),
     )
 
 
@@ -96,22 +112,22 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
     the torques have no derivatives: a table, or formulas that jump or bend.
     """
     require_smooth(scene)
-    columns = _columns(scene, read_variables(scene, TRANSITION))
+    columns = columns_of(scene, read_variables(scene, TRANSITION))
     if start != float(scene.span.start):
         values, _ = _follow(scene, columns, np.array([start]))
         omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
         exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
         initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
         scene = replace(scene, initial=initial)
-        columns = _columns(scene, read_variables(scene, TRANSITION))
+        columns = columns_of(scene, read_variables(scene, TRANSITION))
     values, slopes = _follow(scene, columns, np.array([stop]), start)
-    return np.concatenate([slopes[0, :RATES], _rotation(values[:, RATES:], slopes[:, RATES:])[0]])
+    return np.concatenate([slopes[0, :RATES], small_rotation(values[:, RATES:], slopes[:, RATES:])[0]])
 
 
 # ------------------------------------------------------------------------------------------------ columns
 
 
-class _Column:
+class Column:
     """The dependence of a scene on one variable: derivatives, by this variable, of initial state and constants.
 
     ``start`` is a list of 7 numbers, the derivatives of omega and quaternion at the start; ``constants`` maps the names
@@ -123,15 +139,24 @@ class _Column:
         self.variable = variable
         self.constants: Mapping[str, Fraction] = {}
         if variable.moved is None:
-            q0, *v = scene.initial.quaternion
-            unit = [Fraction(int(i == variable.axis)) for i in range(3)]
-            cross = [v[i - 2] * unit[i - 1] - v[i - 1] * unit[i - 2] for i in range(3)]
-            slopes = [-v[variable.axis], *(q0 * unit[i] + cross[i] for i in range(3))]
-            self.start = [0.0] * RATES + [float(slope / 2) for slope in slopes]
+            slopes = rotation_slopes(scene.initial.quaternion, variable.axis)
+            self.start = [0.0] * RATES + [float(slope) for slope in slopes]
             return
         every = difference(scene, variable, lambda other: {**_start(other), **constants_of(other, general)})
         self.start = [float(every.pop(name, 0)) for name in map(_initial, STATES)]
         self.constants = every
+
+
+def rotation_slopes(q: Any, axis: int) -> Any:
+    """Return the derivative of a quaternion by a small rotation about a body axis, with the number 0, 1 or 2.
+
+    ``q`` holds the four components, scalar first: fractions or arrays. The result, half the product of the quaternion
+    and the unit vector of the axis, is an array of four of them.
+    """
+    q0, *v = q
+    slopes = [-v[axis], *(v[i - 2] * ((i - 1) % 3 == axis) - v[i - 1] * ((i - 2) % 3 == axis) for i in range(3))]
+    slopes[1 + axis] += q0
+    return np.array(slopes) / 2
 
 
 def _initial(state: str) -> str:
@@ -147,18 +172,19 @@ def _start(scene: Scene) -> dict[str, Fraction]:
     return dict(zip(map(_initial, STATES), (*scene.initial.omega_b, *scene.initial.quaternion), strict=True))
 
 
-def _columns(scene: Scene, variables: Sequence[Variable]) -> list[_Column]:
+def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
     general = general_structure(scene)
-    return [_Column(scene, variable, general) for variable in variables]
+    return [Column(scene, variable, general) for variable in variables]
 
 
-def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
+def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
     """Return the form of the equations of motion for the derivatives by the variables of ``columns``.
 
     A constant that one of these variables changes becomes a parameter of the equations, even if its value is zero or
-    one now, since its derivative is needed. Any other constant that is zero or one simplifies the equations.
+    one now, since its derivative is needed; so does each constant in ``varying``, whose values differ between the
+    motions of an ensemble. Any other constant that is zero or one simplifies the equations.
     """
-    moving = {name for column in columns for name in column.constants}
+    moving = {name for column in columns for name in column.constants} | set(varying)
     general, inertia = general_structure(scene), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
     entries = tuple(name for name in general.inertia.entries if name not in PRODUCTS or name in nonzero)  # type: ignore[union-attr]
@@ -185,7 +211,7 @@ def _structure(scene: Scene, columns: Sequence[_Column]) -> Structure:
 # ------------------------------------------------------------------------------------------------ libraries
 
 
-def _rates(plan: Plan) -> tuple[Program, Parameters]:
+def rates_of(plan: Plan) -> tuple[Program, Parameters]:
     """Return the rates of a plan as a program, and their parameters, from the cache or newly derived.
 
     The rates are the time derivatives of the states; a program is a list of operations that can be printed as C. The
@@ -206,15 +232,33 @@ def _rates(plan: Plan) -> tuple[Program, Parameters]:
     return Program.from_json(record["rates"]), formulas
 
 
-def _library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
-    """Return the path of the compiled library that integrates the motion and its derivatives together by Taylor series.
+def variation_source(
+    plan: Plan, rates: Program, depends: Sequence[Sequence[str]], stepper: str, source: Callable[..., str]
+) -> str:
+    """Return the C source of a library that integrates the motion and its derivatives together by Taylor series.
 
-    ``rates`` is the program of the time derivatives of the states. ``depends`` lists, for each variable of the
-    derivatives, the names of those parameters of ``rates`` whose values depend on this variable.
+    Parameters
+    ----------
+    plan : Plan
+        The plan of the rates; the source is kept in the cache under its key.
+    rates : Program
+        The time derivatives of the states.
+    depends : sequence of sequences of str
+        For each variable of the derivatives, the names of those parameters of ``rates`` whose values depend on it.
+    stepper : str
+        The name of the stepper, which is a part of the key.
+    source : function
+        Takes the program of the rates of states and derivatives, and the edges and scales of the blocks whose errors
+        are measured (:func:`symrot.propagation.compiled_models.error_blocks`); it returns the C source.
+
+    Raises
+    ------
+    InputError
+        If the rates have no Taylor series.
     """
-    key = f"variation {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
-    source = library.fetch(key)
-    if source is None:
+    key = f"variation {stepper} {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
+    text = library.fetch(key)
+    if text is None:
         from symrot.codegen.variational import variational_program
 
         size = len(STATES)
@@ -223,19 +267,30 @@ def _library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Pa
             edges += [column * size + RATES, (column + 1) * size]
             scales += [0.0, 1.0]
         try:
-            program = variational_program(rates, depends)
-            source = taylor.translation_unit(program, edges, scales, ORDER, "", has_formulas(plan))
+            text = source(variational_program(rates, depends), edges, scales)
         except InputError as reason:
             raise InputError(f"{plan.scene.name}: sensitivities: {reason}") from None
-        library.store(key, source)
-    return library.build(source, "taylor", taylor.FLAGS)
+        library.store(key, text)
+    return text
+
+
+def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
+    """Return the path of the compiled library that integrates one motion and its derivatives by Taylor series.
+
+    The arguments are those of :func:`variation_source`.
+    """
+
+    def source(program: Program, edges: Sequence[int], scales: Sequence[float]) -> str:
+        return taylor.translation_unit(program, edges, scales, ORDER, "", has_formulas(plan))
+
+    return library.build(variation_source(plan, rates, depends, "taylor", source), "taylor", taylor.FLAGS)
 
 
 # ------------------------------------------------------------------------------------------------ motions
 
 
 def _follow(
-    scene: Scene, columns: Sequence[_Column], times: Floats, begin: float | None = None
+    scene: Scene, columns: Sequence[Column], times: Floats, begin: float | None = None
 ) -> tuple[Floats, Floats]:
     """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
 
@@ -251,10 +306,10 @@ def _follow(
     return values[0], np.concatenate(slopes, axis=2)
 
 
-def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin: float) -> tuple[Floats, Floats]:
-    structure = _structure(scene, columns)
+def _follow_some(scene: Scene, columns: Sequence[Column], times: Floats, begin: float) -> tuple[Floats, Floats]:
+    structure = structure_of(scene, columns)
     plan = Plan(scene, structure, ())
-    rates, parameters = _rates(plan)
+    rates, parameters = rates_of(plan)
 
     def numbers(other: Scene) -> dict[str, Fraction]:
         constants = {"pi": number.PI, **constants_of(other, structure)}
@@ -263,7 +318,7 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin:
     own = numbers(scene)
     moved = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
     depends = [[name for name, _ in parameters if name in slopes] for slopes in moved]
-    path = _library(plan, rates, depends)
+    path = motion_library(plan, rates, depends)
     sizes = [_size(scene, column) for column in columns]
     size = len(STATES)
     start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
@@ -288,11 +343,12 @@ def _follow_some(scene: Scene, columns: Sequence[_Column], times: Floats, begin:
     return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1))
 
 
-def _size(scene: Scene, column: _Column) -> float:
-    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable.
+def _size(scene: Scene, column: Column) -> float:
+    """Return a power of two near the value of the variable by which the derivatives in ``column`` are taken.
 
-    The derivatives are then about as large as the states, so that one error control fits both. For a component of omega
-    the largest component is used; for a rotation, or a variable that is zero, the result is 1.
+    The column is multiplied by it before the integration. The derivatives are then about as large as the states, so
+    that one error control fits both. For a component of omega the largest component is used; for a rotation, or a
+    variable that is zero, the result is 1.
     """
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
@@ -300,7 +356,7 @@ def _size(scene: Scene, column: _Column) -> float:
     return ldexp(1.0, frexp(value)[1]) if value and column.variable.moved is not None else 1.0
 
 
-def _rotation(q: Floats, slopes: Floats) -> Floats:
+def small_rotation(q: Floats, slopes: Floats) -> Floats:
     """Return derivatives of the attitude as small rotations about the body axes, shape (n, 3, columns).
 
     ``q`` holds quaternions, shape (n, 4), and ``slopes`` their derivatives, shape (n, 4, columns). The rotation is the

@@ -38,11 +38,12 @@ from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 import symrot
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.reader import readings_of
+from symrot.checker.claim.reader import Declared, readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
-from symrot.checker.claim.source.text import is_latex
-from symrot.checker.claim.tree import Node
-from symrot.checker.latex.reader import latex_readings
+from symrot.checker.claim.source.text import functions_of_time, is_latex
+from symrot.checker.claim.tree import Node, negated
+from symrot.checker.claim.tree import product as product_of
+from symrot.checker.latex.reader import Names, latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.identification import pairings
 from symrot.checker.recognition.letters import is_atom
@@ -155,16 +156,29 @@ def _same_terms(repair: str, original: str) -> bool:
 
 
 def _with_one_spelling(tree: Node) -> Node:
-    """Return a tree in which the rotations about the axes are spelled Rx, Ry and Rz."""
-    value = str(tree.value).replace("_", "") if tree.kind == "call" and tree.value in ROTATIONS else tree.value
-    return replace(tree, value=value, args=tuple(map(_with_one_spelling, tree.args)))
+    """Return a tree in which the rotations about the axes are spelled Rx, Ry and Rz, and Rx(-a) for Rx(a)^T.
+
+    The scalar product of two names is their product: without a mark, the names in ``omega . L`` may be numbers.
+    """
+    args = tuple(map(_with_one_spelling, tree.args))
+    if tree.kind == "call" and tree.value in ROTATIONS:
+        return replace(tree, value=str(tree.value).replace("_", ""), args=args)
+    if tree.kind == "transpose" and args[0].kind == "call" and args[0].value in ROTATIONS:
+        return replace(args[0], args=(negated(args[0].args[0]),))
+    if tree.kind == "call" and tree.value == "dot" and all(argument.kind == "name" for argument in args):
+        return product_of(list(args))
+    return replace(tree, args=args)
 
 
 def _claims(source: str, given: Sequence[str] = ()) -> list[Claim]:
     """Return the claims of all readings of a text; ``kx`` is a name in one and a product in the other."""
     claims: list[Claim] = []
+    functions = functions_of_time(given)
     try:
-        readings = list(latex_readings(source) if is_latex(source) else readings_of(source))
+        if is_latex(source):
+            readings = list(latex_readings(source, Names(functions=functions)))
+        else:
+            readings = list(readings_of(source, declared=Declared(functions=functions)))
     except SymrotError:
         return []
     for reading in readings:

@@ -88,7 +88,7 @@ def test_frames_are_parts_of_names_if_there_are_several():
 
 
 @pytest.mark.parametrize(("claim", "words"), [
-    ("[[1, 2], [a × b, 3]] = c", "blocks that fit together"), (r"I = \int x^2\, dV", "a density and dV for an integral over a body"),
+    ("[[1, 2], [a × b, 3]] = c", "blocks that fit together"), (r"I = \int x^2\, dV", "for an integral over a body, dm or a density and dV"),
     ("∫ sin(x) dm = 1", "a polynomial in the coordinates"),
 ])  # fmt: skip
 def test_a_refusal_says_what_is_expected(claim, words):

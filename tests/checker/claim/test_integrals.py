@@ -16,7 +16,7 @@ def test_an_integral_is_read_as_printed(text, verdict):
 
 
 def test_an_integral_over_a_volume_needs_a_density():
-    with pytest.raises(InputError, match="a density in front of dV, limits, or dm"):
+    with pytest.raises(InputError, match="a density before dV for an integral over a body"):
         symrot.check("I_zz = ∫(x² + y²) dV")
 
 

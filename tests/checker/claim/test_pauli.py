@@ -22,6 +22,11 @@ CASES = (
     (r"\sigma_y^2 = I", Y @ Y - np.eye(2)),
     ("tr(σ_x σ_y σ_z) = 2i", np.trace(X @ Y @ Z) - 2j),
     ("tr(σ_x^2) = 1", np.trace(X @ X) - 1),
+    ("(σ_x cos φ + σ_y sin φ)² = 1", np.zeros((2, 2))),
+    (r"(a\sigma_x + b\sigma_y)^2 = a^2 - b^2", np.eye(2)),
+    ("det(a σ_x + b σ_y + c σ_z) = -a² - b² - c²", 0),
+    (r"\det\sigma_x = 1", np.linalg.det(X) - 1),
+    ("tr σ_x = 0", np.trace(X)),
     ("(1 + i σ_z) σ_x (1 - i σ_z) = -2 σ_y", (np.eye(2) + 1j * Z) @ X @ (np.eye(2) - 1j * Z) + 2 * Y),
 )
 
@@ -46,7 +51,14 @@ def test_half_angles_rotate_a_matrix():
 
 
 @pytest.mark.parametrize(
-    "text", ["σ_x = E ε_x", "v_i = i σ_x + σ_y", "σ_x + σ_y = 3", "σ_v^2 = σ_x^2 - σ_x σ_y + σ_y^2"]
+    "text",
+    [
+        "σ_x = E ε_x",
+        "(σ_x - σ_y)²/4 + τ_xy² = R²",
+        "v_i = i σ_x + σ_y",
+        "σ_x + σ_y = 3",
+        "σ_v^2 = σ_x^2 - σ_x σ_y + σ_y^2",
+    ],
 )
 def test_other_quantities_with_these_letters_are_not_false(text):
     assert symrot.check(text).verdict == "definition"
@@ -55,3 +67,9 @@ def test_other_quantities_with_these_letters_are_not_false(text):
 def test_a_matrix_in_an_exponent_is_refused():
     with pytest.raises(InputError, match="expected sigma_z outside of exponents"):
         symrot.check(r"e^{-i\theta\sigma_z/2} = \cos(\theta/2) - i\sigma_z\sin(\theta/2)")
+
+
+def test_repairs_have_the_trace_and_the_determinant_of_the_claim():
+    repairs = symrot.check("det(a σ_x + b σ_y) = a² - b²").repairs + symrot.check("tr(σ_x σ_y) = 2").repairs
+    assert repairs
+    assert all("trace" not in repair.text for repair in repairs)

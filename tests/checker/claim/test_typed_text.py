@@ -300,3 +300,11 @@ def test_tr_is_the_trace():
 def test_inverses_on_which_books_disagree_are_asked_about(claim, instead):
     with pytest.raises(InputError, match=f"expected {instead}.* instead of the inverse"):
         symrot.check(claim)
+
+
+@pytest.mark.parametrize("energy", ["2EI₁", "2EI_1"])
+def test_a_letter_before_one_with_an_index_is_a_factor_if_the_text_has_that_letter_elsewhere(energy):
+    """Ω₃² of a free body: E I₁ is a product, since I₁ occurs by itself."""
+    formula = f"Ω₃² = [(M² − {energy}) − I₂(I₂ − I₁)Ω₂²]/[I₃(I₃ − I₁)]"
+    assert symrot.check(formula).verdict == "recognised"
+    assert "EI_1" in symrot.check("x = 2EI_1 + y").text

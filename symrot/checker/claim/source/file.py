@@ -109,8 +109,9 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     symbols, functions = _names(entry, "symbols", place), _names(entry, "functions", place)
     define, sources = [], {}
     known = {*symbols, *functions}
-    if len(known) < len(symbols) + len(functions):
-        raise InputError(f"{place}: expected every symbol and function to be declared once")
+    declared = [*symbols, *functions]
+    if twice := [name for name in known if declared.count(name) > 1]:
+        raise InputError(f"{place}: expected every symbol and function to be declared once, got {min(twice)!r} twice")
     if len(known) + len(entry.get("define", ())) > MOST_NAMES:
         raise InputError(f"{place}: expected at most {MOST_NAMES} names in a claim, got {len(known)} and more")
     for place_of, (defined, formula) in enumerate(entry.get("define", ())):

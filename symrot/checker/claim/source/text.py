@@ -206,10 +206,12 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with its unit matrices as ``eye(n)``, its vectors, and whether it has unit matrices.
+    """Return a relation, the vectors in it, and whether it contains unit matrices.
 
-    ``vectors`` are the vectors known so far. A name that is added to a vector is a vector too; the name of an inertia
-    that is added to a matrix is a tensor.
+    In the relation that is returned, each unit matrix is written as ``eye(n)``. The vectors are ``vectors``, those
+    known so far, and each name that must be a vector or tensor because it is added to one: a name added to a vector is
+    a vector, and the name of an inertia added to a matrix is a tensor. ``define`` has the definitions of the claim, as
+    pairs of a name and a formula; the names in it are left out.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]

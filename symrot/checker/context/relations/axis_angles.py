@@ -27,7 +27,10 @@ NAME = "relation for the angles of momentum and angular velocity to the axis of 
 
 
 def is_stated(context: Context) -> bool:
-    """Return whether the context says in words which angle is that of the angular momentum or the angular velocity."""
+    """Return whether words of the context name the angle from the axis to the angular momentum or angular velocity.
+
+    The axis is the symmetry axis of the body. Books use the same letters for both angles, so only words can tell them.
+    """
     return any(meaning.quantity.title in (OF_MOMENTUM, OF_VELOCITY) for meaning in context.meanings)
 
 

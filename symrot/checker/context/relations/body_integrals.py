@@ -39,8 +39,9 @@ SIGNS = {"minus": 1, "plus": -1}
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
     """Yield the ways to read a claim as one about entries of the inertia tensor and integrals over the body.
 
-    ``sides`` are those of the claim. There is none if the claim has another letter. Unless the context says whether
-    products of inertia have the minus sign, they have it in the first way, and not in the second.
+    ``sides`` are those of the claim. Nothing is yielded if they contain a letter that is neither such an entry nor such
+    an integral. Unless the context says whether products of inertia have the minus sign, they have it in the first way,
+    and not in the second.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -91,9 +92,10 @@ MOMENT_OF_AXIS, MASS, GYRATION = (
 
 
 def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the reading of a claim as ``I = m k^2``, which defines the radius of gyration k, or nothing.
+    """Yield the Substitution by which a claim becomes ``m k^2 = m k^2`` if it is ``I = m k^2`` in any letters.
 
-    It is nothing if the claim has other letters than these three. ``sides`` are those of the claim.
+    ``I = m k^2`` defines the radius of gyration k. Nothing is yielded if the claim, whose sides are ``sides``, has
+    other letters than one for the moment, one for the mass and one for the radius.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     patterns = (MOMENT_OF_AXIS, MASS, GYRATION)

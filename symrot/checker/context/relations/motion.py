@@ -1,4 +1,8 @@
-"""Verdicts on claims about rates of Euler angles, tops and integrals over a body, by the relations that hold there."""
+"""Verdicts on claims about rates of Euler angles, about tops, and about integrals over a body.
+
+For each of these three subjects symrot derives relations, such as the angular velocity from the angle rates. Their
+formulas are substituted in the claim, which is true if it then is an identity.
+"""
 
 from dataclasses import replace
 

@@ -157,8 +157,10 @@ def _of_steady_precession(
 ) -> Iterator[Substitution]:
     """Yield the condition of steady precession of a top, if a claim gives a formula for the rate of precession.
 
-    The formula, as m g l/(C omega_3), takes the place of the rate in the condition, which then must be zero. ``sides``
-    are those of the claim; ``names`` and ``values`` are its letters and the quantities that they mean.
+    The condition is Lagrange's equation for a top with constant theta, as an expression that must be zero. The claim's
+    formula, such as m g l/(C omega_3), is inserted in it for the rate of precession. ``sides`` are those of the claim;
+    ``names`` and ``values`` are its letters and the quantities that they mean; ``load`` is the weight, m g or one
+    symbol.
     """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):

@@ -123,10 +123,13 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
     yield "a unit quaternion by its scalar and vector parts", by_scalar
 
 
-def _with_unit_axis(powers: Matrix) -> Matrix:
-    """Return a rotation matrix in its form for a unit axis n: n n^T - 1 replaces the square of the skew matrix of n."""
+def _with_unit_axis(rotation: Matrix) -> Matrix:
+    """Return a rotation matrix about an axis n in its form for a unit axis: n n^T - 1 replaces the square of skew(n).
+
+    ``rotation`` is the matrix with that square.
+    """
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
-    return (powers + excess * eye(3)).applyfunc(expand)
+    return (rotation + excess * eye(3)).applyfunc(expand)
 
 
 def along_axes() -> Iterator[Named]:

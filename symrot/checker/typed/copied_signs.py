@@ -1,4 +1,8 @@
-"""Normalising a copied text: commas in thousands, ≈ before a rounded value, braces used as brackets, and "where"."""
+"""Normalising a copied text, so that the readers of claims understand it.
+
+Commas in thousands are left out; ≈ before a rounded value becomes =; braces used as brackets become brackets; and
+definitions after the word "where" are moved to the front.
+"""
 
 import re
 
@@ -19,7 +23,10 @@ _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
 def with_plain_signs(source: str) -> str:
-    r"""Return a text with ordinary signs in place of others that can mean only one thing, such as the comma in 1,500.
+    r"""Return a copied text in the notation that the readers of claims understand, where its meaning is beyond doubt.
+
+    The comma in 1,500 is left out, ≈ before a rounded value becomes =, braces used as brackets become brackets, and
+    definitions after "where" are moved to the front, where the readers expect them.
 
     Examples
     --------

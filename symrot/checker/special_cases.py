@@ -1,0 +1,100 @@
+"""Claims about complex numbers and vectors that hold only in a special case, which the verdict then states in words.
+
+``|z|^2 = z^2`` holds for a real z, and ``F·d = F d`` for a displacement d along F.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from symrot.checker.arrays.complex_parts import NUMBER, substituted, with_parts
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.tree import Node, number, product, sum_of, walk
+from symrot.checker.claim.vectors import Vector, is_components
+from symrot.checker.claim_verdict import check_claim
+from symrot.checker.verdict import Diagnosis, Verdict
+
+__all__ = ["for_complex_numbers", "for_special_directions"]
+
+UNIT = "i"
+NO_FAULT = Diagnosis("none", "")
+FACTOR, OTHER = "factor_", "other_"
+"""Names that no claim has: of a positive factor, and of a vector."""
+
+
+def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict "conditional" for a claim on ``|z|`` that is true for real z and false for complex z.
+
+    Only z, w and zeta are usually complex numbers; the claim has no other letters. Any other claim keeps its
+    ``verdict``.
+    """
+    if verdict.verdict != "true" or claim.relation is None or claim.define or claim.hypotheses or claim.has_parts:
+        return verdict
+    nodes = [node for side in claim.relation[1:] for _, node in walk(side)]
+    names = sorted({str(node.value) for node in nodes if node.kind == "name"} - {"pi"})
+    has_length = any(node.value == "abs" and node.args[0].kind == "name" for node in nodes if node.kind == "call")
+    if not has_length or not all(map(NUMBER.fullmatch, names)):
+        return verdict
+    numbers = {
+        name: sum_of([Node("name", f"Re_{name}"), product([Node("name", UNIT), Node("name", f"Im_{name}")])])
+        for name in names
+    }
+    sign, left, right = claim.relation
+    relation = with_parts((sign, substituted(left, numbers), substituted(right, numbers)), UNIT, claim.text)
+    other = check_claim(replace(claim, relation=relation, alternatives=(), has_parts=True), repair=False)
+    if other.verdict != "false":
+        return verdict
+    condition = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} real"
+    point = other.counterexample and replace(other.counterexample, entry=None)
+    return replace(
+        verdict,
+        verdict="conditional",
+        requires=(condition,),
+        conditions=(condition, *verdict.conditions),
+        counterexample=point,
+    )
+
+
+def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict "conditional" for a false claim that is true for two vectors in special directions.
+
+    One side of the claim has only the lengths of the vectors. The vectors then have the same direction, as in ``F·d =
+    F d``, or are perpendicular, as in ``|a × b| = a b``. Any other claim keeps its ``verdict``.
+    """
+    if verdict.verdict != "false" or claim.relation is None or claim.hypotheses:
+        return verdict
+    vectors = [name for name, tree in claim.define if is_components(name, tree) and tree in _columns(name)]
+    if len(vectors) != 2 or len(claim.define) != 2 or not any(_has_only_lengths(side) for side in claim.relation[1:]):
+        return verdict
+    first, second = vectors
+    own, other = Node("name", first), Node("name", OTHER)
+    components = dict(claim.define)
+    along = product([Node("name", FACTOR), own])
+    across = Node("call", "cross", (own, other))
+    positive = (">", Node("name", FACTOR), number(0))
+    columns = (first, components[first]), (OTHER, Vector(OTHER).components)
+    cases = (
+        (f"{first} and {second} have the same direction", (columns[0], (second, along)), (positive,)),
+        (f"{first} and {second} are perpendicular", (*columns, (second, across)), ()),
+    )
+    for condition, define, hypotheses in cases:
+        special = replace(claim, define=define, hypotheses=hypotheses, alternatives=())
+        if check_claim(special, repair=False).verdict == "true":
+            conditional = replace(verdict, verdict="conditional", requires=(condition,), conditions=(condition,))
+            is_far = verdict.diagnosis.code == "two_faults"
+            return replace(conditional, diagnosis=NO_FAULT, repairs=()) if is_far else conditional
+    return verdict
+
+
+def _columns(name: str) -> Iterator[Node]:
+    """Yield the columns of the three components of a vector of this name, as constants and as functions of time."""
+    for axes in ("xyz", "123"):
+        yield Vector(name, axes=axes).components
+        yield Vector(name, timed=True, axes=axes).components
+
+
+def _has_only_lengths(side: Node) -> bool:
+    """Return whether a side has vectors, but only inside their lengths: as ``|a| |b|``, which is ``a b`` in books."""
+    calls = [node for _, node in walk(side) if node.kind == "call" and node.value in ("dot", "cross")]
+    return bool(calls) and all(node.value == "dot" and node.args[0] == node.args[1] for node in calls) and all(
+        node.args[0].kind == "name" for node in calls
+    )  # fmt: skip

@@ -1,0 +1,275 @@
+"""The derivatives of the motions of an ensemble by initial values and constants, in SIMD lanes.
+
+A column consists of the derivatives by one variable. All motions have the same variational equations, in which every
+constant that varies in the ensemble is a parameter; the derivatives of a motion therefore depend on this motion alone.
+The equations are those of :mod:`symrot.propagation.sensitivities.variation`, with one motion in each lane.
+"""
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from symrot.build import cache as library
+from symrot.ensemble import lanes
+from symrot.ensemble.motions import Problem
+from symrot.ensemble.numbers import Numbers
+from symrot.errors import InputError, PropagationError
+from symrot.formula.program import Program
+from symrot.planning.general_structure import constants_of
+from symrot.planning.plan import Plan
+from symrot.propagation.compiled_models import has_formulas
+from symrot.propagation.sensitivities.variables import (
+    ATTITUDE,
+    Variable,
+    difference,
+    groups_of,
+    read_variables,
+    require_smooth,
+)
+from symrot.propagation.sensitivities.variation import (
+    AT_ONCE,
+    ORDER,
+    RATES,
+    SMALL,
+    STATES,
+    TOLERANCE,
+    TRIES,
+    Column,
+    columns_of,
+    motion_library,
+    rates_of,
+    rotation_slopes,
+    small_rotation,
+    structure_of,
+    variation_source,
+)
+from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.stepping import Floats
+from symrot.results.sensitivity import Sensitivities
+from symrot.scene.scene import Scene
+
+__all__ = ["follow_sensitivities", "read_columns"]
+
+SIZE = len(STATES)
+BLOCK = 1 << 22  # numbers of one block of motions that are in memory beside the result: 32 MB
+
+
+def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
+    """Return the derivatives of all motions of a problem at its times, and for each motion why they stopped early.
+
+    Parameters
+    ----------
+    problem : Problem
+        The motions with their times; its method does not matter.
+    keys : sequence of str
+        The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
+
+    Returns
+    -------
+    Sensitivities, texts
+        Arrays of the shapes (n, m, 3, k), (n, m, 4, k) and (n, m, 3, k) for n motions, m times and k variables; NaN at
+        times that the derivatives of a motion did not reach. The text of a motion that reached all times is empty.
+
+    Raises
+    ------
+    InputError
+        If the torques have no derivatives, if a key names no variable, or if a variable changes something that varies
+        in the ensemble under another name.
+    """
+    variation, scene = problem.variation, problem.variation.scene
+    own = [float(rate) for rate in scene.initial.omega_b]
+    varying = [*variation.columns, *(["omega"] if (variation.omega != own).any() else [])]
+    variables, columns = read_columns(
+        scene, keys, [*varying, *([] if variation.quaternion is None else ["quaternion"])]
+    )
+    count, samples = len(variation), problem.times.shape[-1]
+    omega, quaternion, rotation = (np.full((count, samples, size, len(columns)), np.nan) for size in (3, 4, 3))
+    messages = [""] * count
+    for first in range(0, len(columns), AT_ONCE):
+        some = slice(first, first + AT_ONCE)
+        equations = _Equations(problem, columns[some])
+        each = max(1, BLOCK // (samples * SIZE * (1 + len(columns[some]))))
+        for start in range(0, count, each):
+            rows = np.arange(start, min(start + each, count))
+            states, slopes, reasons = equations.follow(rows)
+            block = slice(start, start + len(rows))
+            omega[block, ..., some], quaternion[block, ..., some] = slopes[:, :, :RATES], slopes[:, :, RATES:]
+            turned = small_rotation(
+                states[..., RATES:].reshape(-1, 4), slopes[:, :, RATES:].reshape(-1, 4, len(columns[some]))
+            )
+            rotation[block, ..., some] = turned.reshape(*slopes.shape[:2], 3, -1)
+            for row, reason in zip(rows.tolist(), reasons, strict=True):
+                messages[row] = messages[row] or (reason and f"sensitivities: {reason}")
+    names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
+    return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
+
+
+def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
+    """Return the variables that the keys of a request name, and the dependence of the scene on each of them.
+
+    ``varying`` are the names of the constants that vary in the ensemble, with ``omega`` and ``quaternion`` if the
+    initial states do. The errors are those of :func:`follow_sensitivities`.
+    """
+    require_smooth(scene)
+    variables = read_variables(scene, keys)
+    columns = columns_of(scene, variables)
+    for column in columns:
+        _require_own(column, varying)
+    return variables, columns
+
+
+def _require_own(column: Column, varying: Collection[str]) -> None:
+    """Raise InputError if a variable changes a number that varies in the ensemble under another name.
+
+    An example is the variable ``gravity`` while ``weight`` has a value of its own in each motion, so that ``varying``
+    contains ``weight``.
+    """
+    variable = column.variable
+    if variable.key == ATTITUDE or variable.key.startswith("omega"):
+        return
+    moved = set(column.constants)
+    if len(column.constants) == 1 and column.constants.get(_constant(variable)) == 1:
+        moved.clear()
+    moved |= {"omega"} if any(column.start[:RATES]) else set()
+    moved |= {"quaternion"} if any(column.start[RATES:]) else set()
+    own = sorted(moved.intersection(varying))
+    if own:
+        raise InputError(
+            f"sensitivities: expected variables that change nothing which varies between the motions, but "
+            f"{variable.name} changes {', '.join(own)}; name the constants that vary as variables"
+        )
+
+
+def _constant(variable: Variable) -> str:
+    """Return the name of the constant of the equations that a variable sets, if it sets only one: its own name.
+
+    A principal moment, such as ``principal_2``, sets a moment of inertia, ``I_yy``.
+    """
+    stem, _, number = variable.name.rpartition("_")
+    return f"I_{2 * 'xyz'[int(number) - 1]}" if stem == "principal" else variable.name
+
+
+class _Equations:
+    """The compiled equations of the motions and of the columns of their derivatives, with the numbers of each motion.
+
+    Parameters
+    ----------
+    problem : Problem
+        The motions.
+    columns : sequence of Column
+        At most :data:`AT_ONCE` columns.
+    """
+
+    def __init__(self, problem: Problem, columns: Sequence[Column]) -> None:
+        self.problem, self.columns = problem, columns
+        variation, scene = problem.variation, problem.variation.scene
+        structure = structure_of(scene, columns, variation.columns)
+        self.plan = Plan(scene, structure, ())
+        rates, self.parameters = rates_of(self.plan)
+        numbers = Numbers(variation, self.plan, range(len(variation)))
+        self.values = numbers.bound(self.parameters)
+        self.slopes = [
+            numbers.slopes(
+                self.parameters,
+                difference(scene, column.variable, lambda other: constants_of(other, structure)),
+                column.variable.name,
+            )
+            if column.constants
+            else {}
+            for column in columns
+        ]
+        depends = [list(slopes) for slopes in self.slopes]
+        self.in_lanes = not has_formulas(self.plan)
+        self.path = self._lanes(rates, depends) if self.in_lanes else motion_library(self.plan, rates, depends)
+
+    def _lanes(self, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
+        from symrot.codegen.taylor.ensemble_source import lane_definitions
+
+        def source(program: Program, edges: Sequence[int], scales: Sequence[float]) -> str:
+            return lane_definitions(program, edges, scales, ORDER)
+
+        text = variation_source(self.plan, rates, depends, "lanes", source)
+        return library.build(lanes.wrap_translation_unit(text), "lanes", lanes.FLAGS)
+
+    def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
+        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and why each motion stopped early, or "".
+
+        ``rows`` are the indices of the n motions in the ensemble. A column that stays small is integrated again in
+        smaller units, so that the control of errors fits it, as for one motion.
+        """
+        problem, count, columns = self.problem, len(rows), len(self.columns)
+        times = problem.times if problem.times.ndim == 1 else problem.times[rows]
+        start, units = self._start(rows), self._units(rows)
+        grid = np.empty((count, times.shape[-1], SIZE * (1 + columns)))
+        reasons, again = [""] * count, np.arange(count)
+        for attempt in range(TRIES):
+            states = np.concatenate([start[again, :, :1], start[again, :, 1:] * units[again, None, :]], axis=2)
+            p = [self.values[rows[again]]]
+            for k, slopes in enumerate(self.slopes):
+                p += [units[again, k : k + 1] * slope[rows[again], None] for slope in slopes.values()]
+            own = times if times.ndim == 1 else times[again]
+            y = states.transpose(0, 2, 1).reshape(len(again), -1)
+            samples, messages = self._integrate(np.concatenate(p, axis=1), y, own)
+            grid[again] = samples
+            for place, message in zip(again.tolist(), messages, strict=True):
+                reasons[place] = message
+            derivatives = samples[..., SIZE:].reshape(len(again), -1, columns, SIZE)
+            largest = np.nan_to_num(np.abs(derivatives[..., RATES:])).max(axis=(1, 3), initial=0.0)
+            small = (largest > 0) & (largest < SMALL)
+            if not small.any() or attempt == TRIES - 1:
+                break
+            _, exponents = np.frexp(largest)
+            units[again] = np.where(small, np.ldexp(units[again], 1 - exponents), units[again])
+            again = again[small.any(axis=1)]
+        slopes_of = grid[..., SIZE:].reshape(count, -1, columns, SIZE) / units[:, None, :, None]
+        return grid[..., :SIZE], slopes_of.transpose(0, 1, 3, 2), reasons
+
+    def _start(self, rows: lanes.Integers) -> Floats:
+        """Return the initial states of motions and their derivatives in each column, shape (n, 7, 1 + k)."""
+        states = self.problem.variation.initial_states[rows]
+        start = np.empty((len(rows), SIZE, 1 + len(self.columns)))
+        start[..., 0] = states
+        for k, column in enumerate(self.columns, start=1):
+            start[..., k] = column.start
+            if column.variable.moved is None:
+                start[:, RATES:, k] = rotation_slopes(states[:, RATES:].T, column.variable.axis).T
+        return start
+
+    def _units(self, rows: lanes.Integers) -> Floats:
+        """Return the power of two by which each column of each motion is first multiplied, shape (n, k).
+
+        It is near the value of the variable in this motion, as for one motion.
+        """
+        variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
+        for k, column in enumerate(self.columns):
+            variable = column.variable
+            if variable.moved is None:
+                continue
+            if variable.key.startswith("omega"):
+                sizes = np.abs(variation.omega[rows]).max(axis=1)
+            else:
+                varied = variation.columns.get(_constant(variable))
+                sizes = np.full(len(rows), abs(float(variable.value))) if varied is None else np.abs(varied[rows])
+            units[:, k] = np.where(sizes > 0, np.ldexp(1.0, np.frexp(sizes)[1]), 1.0)
+        return units
+
+    def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
+        """Return the states of motions and columns at the times, shape (n, m, 7 (1 + k)), and the reasons of stops.
+
+        Steps under torques given by formulas are limited by bounds of the rates, which the stepper in lanes does not
+        support; these motions are integrated one after the other.
+        """
+        problem = self.problem
+        if self.in_lanes:
+            outcome = lanes.follow(self.path, p, y, problem.t0, times, TOLERANCE, workers=problem.workers)
+            return outcome.states, outcome.messages
+        samples, messages = np.full((len(y), times.shape[-1], y.shape[1]), np.nan), []
+        for k in range(len(y)):
+            motion = taylor.integration(self.path, p[k], y[k], problem.t0, TOLERANCE)
+            try:
+                samples[k], _ = motion.sample(times if times.ndim == 1 else times[k])
+                messages.append("")
+            except PropagationError as error:
+                messages.append(str(error))
+        return samples, messages

@@ -1,0 +1,26 @@
+"""Claims that hold only for real numbers, or for vectors in special directions."""
+
+import pytest
+
+from symrot import check
+
+
+@pytest.mark.parametrize(("text", "condition"), [
+    ("|z|² = z²", "z is real"),
+    (r"|z|^2 = z^2\,", "z is real"),
+    ("F·d = F d", "F and d have the same direction"),
+    (r"\mathbf{F}\cdot\mathbf{d} = F d", "F and d have the same direction"),
+    (r"\vec F\cdot\vec d = F d", "F and d have the same direction"),
+    ("|a × b| = a b", "a and b are perpendicular"),
+])  # fmt: skip
+def test_the_special_case_is_the_condition(text, condition):
+    verdict = check(text)
+    assert (verdict.verdict, verdict.requires) == ("conditional", (condition,))
+
+
+@pytest.mark.parametrize(("text", "outcome"), [
+    ("abs(z)**2 == z**2", "true"), ("|z w| = |z| |w|", "true"), ("m·g = m g", "true"), ("|a|² = a²", "true"),
+    (r"\vec F\cdot\vec d = 2 F d", "false"), ("W = F·d = F d cos θ", "definition"), ("A·B = AB cos θ", "definition"),
+])  # fmt: skip
+def test_other_claims_have_no_special_case(text, outcome):
+    assert check(text, repair=False).verdict == outcome

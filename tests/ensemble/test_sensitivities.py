@@ -1,0 +1,107 @@
+"""Derivatives of the motions of an ensemble: those of single motions, for each motion alone, refused in a sentence."""
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError
+from tests.needs import needs_compiler
+
+TOP = {
+    "schema": 1,
+    "body": {"principal": [2, 3, 4], "about": "fixed_point"},
+    "initial": {"omega": ["1/2", "1/3", 2], "attitude": {"quaternion": [3, 1, 2, 1]}},
+    "span": {"t": [0, 2], "samples": 3},
+    "torque": [{"kind": "gravity", "weight": 3, "center_of_mass": [0, "1/5", 1]}],
+}
+DRIVEN = TOP | {
+    "torque": [{"kind": "expression", "parameters": {"k": 2}, "torque": ["k*exp(-400*(t - 1)**2)", "0", "-omega_3/7"]}]
+}
+OMEGA = np.array([[0.5, 0.25, 2.0], [1.0, -0.5, 0.125], [0.0, 0.0, 3.0]])
+PARTS = ("omega", "quaternion", "rotation")
+
+
+def agree(one, other):
+    """Each column agrees with the single motion's to some units in the last place of its largest value."""
+    assert all(getattr(one, part).shape == getattr(other, part).shape for part in PARTS)
+    own, single = (np.concatenate([getattr(each, part) for part in PARTS], axis=1) for each in (one, other))
+    assert (np.abs(own - single).max(axis=(0, 1)) <= 1e-13 * np.abs(single).max(axis=(0, 1))).all()
+
+
+WEIGHTS = [3.0, 1.5, 2.0]
+KEYS = ["omega_2", "weight"]
+ATTITUDES = np.array([[1.0, 2, 0, 0], [1, 0, 0, 0], [3, 1, 2, 1]])
+
+
+@pytest.fixture(scope="module")
+def tops():
+    """Three tops of different weights, differentiated by a rate and by the weight."""
+    return symrot.propagate_ensemble(
+        TOP, omega=OMEGA, quaternion=ATTITUDES, parameters={"weight": WEIGHTS}, sensitivities=KEYS
+    )
+
+
+@needs_compiler
+def test_derivatives_are_those_of_single_motions(tops):
+    assert tops.success and tops.sensitivities.rotation.shape == (3, 3, 3, 2)
+    single = symrot.propagate(
+        TOP, omega=OMEGA[1], quaternion=ATTITUDES[1], parameters={"weight": 1.5}, sensitivities=KEYS
+    )
+    agree(tops[1].sensitivities, single.sensitivities)
+
+
+@needs_compiler
+@pytest.mark.campaign
+@pytest.mark.parametrize("key", ["I_xy", "attitude"])
+@pytest.mark.parametrize("k", range(3))
+def test_derivatives_of_full_tensors_are_those_of_single_motions(k, key):
+    """The product of inertia is zero in one motion; the equations are those of a full tensor in each."""
+    products = [0.0, 0.25, 0.125]
+    ensemble = symrot.propagate_ensemble(TOP, omega=OMEGA, parameters={"I_xy": products}, sensitivities=[key])
+    single = symrot.propagate(TOP, omega=OMEGA[k], parameters={"I_xy": products[k]}, sensitivities=[key])
+    agree(ensemble[k].sensitivities, single.sensitivities)
+
+
+@needs_compiler
+def test_derivatives_do_not_depend_on_the_other_motions(tops):
+    alone = symrot.propagate_ensemble(
+        TOP, omega=OMEGA[1:], quaternion=ATTITUDES[1:], parameters={"weight": WEIGHTS[1:]}, workers=2,
+        sensitivities=KEYS,
+    )  # fmt: skip
+    for part in PARTS:
+        assert np.array_equal(getattr(tops[1].sensitivities, part), getattr(alone[0].sensitivities, part))
+
+
+@needs_compiler
+def test_derivatives_under_a_short_pulse_are_those_of_single_motions():
+    """The pulse lasts 0.1 s; a step that misses it leaves all derivatives by k zero."""
+    ensemble = symrot.propagate_ensemble(DRIVEN, omega=OMEGA[:2], sensitivities=["k"])
+    single = symrot.propagate(DRIVEN, omega=OMEGA[1], sensitivities=["k"])
+    agree(ensemble[1].sensitivities, single.sensitivities)
+    assert abs(ensemble[1].sensitivities["k"].omega[-1, 0]) > 0.01
+
+
+@needs_compiler
+def test_derivatives_have_labels(tops):
+    pytest.importorskip("xarray")
+    assert tops.to_xarray().omega_by_weight.dims == ("trajectory", "time", "body_axis")
+    table = tops.to_dataframe()["rotation_2_by_weight"]
+    assert np.array_equal(table, tops.sensitivities["weight"].rotation[..., 1].ravel())
+
+
+@pytest.mark.parametrize(
+    ("scene", "options", "message"),
+    [
+        (TOP, {"sensitivities": "omega"}, "expected a list of names"),
+        (TOP, {"sensitivities": ["wieght"]}, "did you mean 'weight'"),
+        ("friction_wheel", {"sensitivities": ["omega"]}, "jump or bend"),
+        (
+            "heavy_top_loops",
+            {"sensitivities": ["gravity"], "parameters": {"weight": [1.0, 2.0, 3.0]}},
+            "gravity changes weight",
+        ),
+    ],
+)
+def test_what_has_no_derivatives_is_refused_in_a_sentence(scene, options, message):
+    with pytest.raises(InputError, match=message):
+        symrot.propagate_ensemble(scene, omega=OMEGA, t=[0, 1], **options)
