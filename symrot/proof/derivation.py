@@ -125,10 +125,7 @@ class Derivation(PrintedPage):
         self.rates |= rates or {}
 
     def section(self, title: str) -> None:
-        """Begin a new section of the page;
-
-        ``title`` is its heading, and all later steps and paragraphs belong to it.
-        """
+        """Begin a new section of the page, with the heading ``title``; all later steps and paragraphs belong to it."""
         self.items.append(Section(title))
 
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:

@@ -1,6 +1,6 @@
 """Jacobi's elliptic functions, defined by their derivatives: addition theorems, zeta and theta functions."""
 
-from sympy import Matrix, Symbol, cos, diff, sech, sin, tanh
+from sympy import Matrix, S, Symbol, cos, diff, sech, sin, tanh
 
 from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives, imaginary, shifted, squares
 from symrot.catalogue.tools.motion import rate
@@ -17,17 +17,17 @@ def derive() -> Derivation:
         title="Jacobi's elliptic functions by their derivatives",
         source="Whittaker & Watson, *A Course of Modern Analysis*, 4th ed., chapters 21 and 22",
         about=(
-            "This page defines the elliptic functions by their derivatives and proves the properties that the exact "
-            "motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the argument of a "
-            "theta function. Each property follows from the properties before it, without tables."
+            "This derivation defines the elliptic functions by their derivatives and proves the properties that the "
+            "exact motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the "
+            "argument of a theta function. Each property follows from the properties before it, without tables."
         ),
     )
     _definition(d)
+    _limits(d)
     _sums(d)
     _zeta(d)
     _theta(d)
     _imaginary(d)
-    _limits(d)
     return d
 
 
@@ -208,6 +208,7 @@ def _imaginary(d: Derivation) -> None:
 def _limits(d: Derivation) -> None:
     d.section("Parameters with elementary functions")
     u = Symbol("u")
+    d.notation({"u": u}, {u: S.One})
     for claim, parameter, functions, why in (
         (
             r"At $\mu = 0$ the functions sn, cn, dn are sine, cosine and 1.",

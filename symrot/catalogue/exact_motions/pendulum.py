@@ -25,8 +25,8 @@ def derive() -> Derivation:
         ),
     )
     _plane(d)
-    _turning(d)
     _spherical(d)
+    _turning(d)
     return d
 
 
@@ -137,8 +137,8 @@ def _spherical(d: Derivation) -> None:
     highest = -(1 + U1 * U2) / (U1 + U2)
     d.passage(
         r"If $p_\psi = 0$ but $p_\phi \ne 0$, the pendulum moves around the vertical, and its height oscillates "
-        "between $u_1$ and $u_2$, measured from the support. These two heights give the third zero of the cubic "
-        "polynomial:",
+        "between $u_1$ and $u_2$, measured from the support. These two heights give the third zero of the "
+        "cubic polynomial of the [heavy top](heavy_top_motion.md):",
         ("u_3", highest),
     )
     d.nonzero("The two heights are not both zero,", U1 + U2, "u_1 + u_2")

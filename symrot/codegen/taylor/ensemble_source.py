@@ -350,7 +350,10 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series that the coefficients of another series need, such as cosine for sine of ``a t + b``."""
+        """Return the indices of the series whose coefficient n - 1 another series needs for coefficient n.
+
+        Sine and cosine of ``a t + b`` need each other, for example.
+        """
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
@@ -430,8 +433,11 @@ class _Jet:
         lines += [f"    {_add(f'a{i}', sign, f'f{c.a}, ' + self.at(c.b, '1'))}" for i, sign, c in terms]
         return [*lines, "}"]
 
-    def between(self) -> list[str]:
-        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
+    def completed_sums(self) -> list[str]:
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
+
+        They add the terms u[1] v[n] and u[n] v[1]; the loop before has added the others.
+        """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             for sign, (a, b, _) in slot.terms:
@@ -458,7 +464,7 @@ class _Jet:
             "{", *_indented(orders["1"]), "}",
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
-                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+                        *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
         places = {name: f"p[{i}]" for i, name in enumerate(self.system.parameters)}

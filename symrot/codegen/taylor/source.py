@@ -128,7 +128,7 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a pack, a vector of four series.
+        """Return the C expression for the coefficients of order n, just computed, of a pack (a vector of four series).
 
         It is the name of a variable if there is one, otherwise the result of :meth:`picked`.
         """

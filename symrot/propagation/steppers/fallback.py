@@ -114,8 +114,8 @@ class Options:
     max_steps : int
         Largest number of evaluations of the right-hand side.
     deviations : Deviations, optional
-        Bounds on how far the right-hand side may deviate from a constant within a step. They limit the steps, so that
-        no step misses a short pulse.
+        Bounds on how far the right-hand side may change within a step. They limit the steps, so that no step misses a
+        short pulse.
     clock : callable, optional
         A :data:`Clock`, if the right-hand side can count time from an epoch.
     whole : WholeMotion, optional
