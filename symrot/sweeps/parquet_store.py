@@ -142,11 +142,12 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the array ``name`` can be read from one column.
+        """Return whether the array ``name`` can be read from one column: input, output, status or message.
 
         An attitude cannot, because each of its four components has a column of its own.
         """
-        return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
+        columns = (variable.name for variable in self.header.variables if variable.dimensions in ((), (TIME,)))
+        return name in (STATUS, MESSAGE, *columns)
 
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.

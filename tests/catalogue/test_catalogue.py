@@ -308,6 +308,7 @@ def test_a_long_formula_in_a_sentence_is_displayed_in_latex():
 
 
 def test_a_proof_on_the_board_fits_on_a_screen(derived):
+    assert sum(bool(step.board) for page in derived.values() for step in page.steps) > 40
     for page in derived.values():
         for number, step in enumerate(page.steps, 1):
             if step.board:

@@ -154,3 +154,42 @@ def test_a_fault_in_an_equation_is_found_from_the_known_relation(claim, code, re
 ])  # fmt: skip
 def test_only_a_special_case_or_another_axis_excuses_a_formula_near_a_known_one(claim, verdict):
     assert symrot.check(claim).verdict == verdict
+
+
+@pytest.mark.parametrize(("claim", "where", "repair"), [
+    ("K = 1/2 m v^2 (1 + k/R)", ["k = radius of gyration"], "K = 1/2*m*v^2*(1 + k^2/R^2)"),
+    ("U = 1/2 I (omega_2 - omega_1)^2", ["U = work"], "U = 1/2*I*(omega_2^2 - omega_1^2)"),
+    ("I_xy = Ibar_xy + m d_x^2", [], "I_xy = Ibar_xy + m*d_x*d_y"),
+    ("R_12 = n_x n_y (1 - cos theta) - n_z cos theta", [], "R_12 = n_x*n_y*(1 - cos(theta)) - n_z*sin(theta)"),
+    ("theta_1' = omega_1 + (omega_2 sin theta_1 + omega_3 cos theta_1) tan theta_1", [],
+     "theta_1' = omega_1 + (omega_2*sin(theta_1) + omega_3*cos(theta_1))*tan(theta_2)"),
+    ("omega_3 = theta_1' sin theta_2 + theta_2'", [], "omega_3 = theta_1'*sin(theta_2) + theta_3'"),
+    ("k = k_bar + d", [], "k^2 = k_bar^2 + d^2"),
+    ("tr R = 1 + cos theta", [], "trace(R) = 1 + 2*cos(theta)"),
+    ("Omega_1^2 + Omega_2^2 = phi'^2 sin theta + theta'^2", [], "Omega_1^2 + Omega_2^2 = phi'^2*sin(theta)^2 + theta'^2"),
+    ("b_0^2 - b_1^2 - b_2^2 - b_3^2 = 1", ["b = Euler parameters"], "b_0^2 + b_1^2 + b_2^2 + b_3^2 = 1"),
+    ("M_1 = 3 n (J_3 - J_2) C_23 C_33", ["n = mean motion"], "M_1 = 3*n^2*(J_3 - J_2)*C_23*C_33"),
+])  # fmt: skip
+def test_usual_slips_are_found(claim, where, repair):
+    """A square lost in a quotient or in all terms, an index, an angle or a rate written twice, a lost 2, lost signs."""
+    verdict = symrot.check(claim, where=where)
+    assert (verdict.verdict, verdict.repairs[0].text) == ("doubtful", repair)
+
+
+@pytest.mark.parametrize("claim", ["M_1 = 3 n^2 (J_3 - J_2) C_23 C_33", "G_1 = 3 n^2 (I_3 - I_2) c_2 c_3"])
+def test_the_torque_of_the_gravity_gradient_is_known_in_the_letters_of_books(claim):
+    assert symrot.check(claim).verdict == "recognised"
+
+
+@pytest.mark.parametrize(("lines", "repair"), [
+    (("I_1 = m/5 (b^2 + c^2)", "I_2 = m/5 (a^2 + b^2)", "I_3 = m/5 (a^2 + b^2)"), "I_2 = m/5*(a^2 + c^2)"),
+    (("omega_x = theta' cos phi + psi' sin theta sin phi", "omega_y = theta' sin phi - psi' sin theta cos phi",
+      "omega_z = psi' + phi' cos theta"), "omega_z = phi' + psi'*cos(theta)"),
+    (("omega_x = theta' cos psi + phi' sin theta sin psi", "omega_y = theta' sin phi - psi' sin theta cos phi",
+      "omega_z = psi' + phi' cos theta"), "omega_y = theta'*sin(psi) - phi'*sin(theta)*cos(psi)"),
+])  # fmt: skip
+def test_of_lines_that_do_not_fit_together_one_is_repaired(lines, repair):
+    """Each line alone is known; the letters of the third text mean other angles on its second line than on the first."""
+    verdict = symrot.check("\n".join(lines))
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "wrong_symbol")
+    assert [each.text for each in verdict.repairs] == [repair]

@@ -236,3 +236,12 @@ def test_the_description_names_what_identifies_a_sweep(tmp_path):
     identity = json.loads((tmp_path / "a.parquet" / "_sweep.json").read_text())["identity"]
     assert {"scene", "vary", "seed", "count", "times", "output"} <= set(identity)
     assert ZarrStore.__doc__
+
+
+def test_a_parquet_file_has_only_the_arrays_of_its_header(tmp_path):
+    pytest.importorskip("pyarrow")
+    result = sweep(path=tmp_path / "out.parquet", count=5)
+    store = result._store
+    assert store.has("status") and store.has(OUTPUTS[0]) and not store.has("no such array")
+    with pytest.raises(InputError, match="expected one of status"):
+        result.array("no such array")

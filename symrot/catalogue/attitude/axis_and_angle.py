@@ -47,6 +47,10 @@ def _forward(d: Derivation) -> None:
         because="$n \\cdot n = 1$",
         relations=UNIT,
         named=r"v_\perp \cdot n",
+        board=(
+            (r"The definition of $v_\perp$:", r"v \cdot n - (n \cdot v)\,(n \cdot n)"),
+            (r"$n \cdot n = 1$:", "0"),
+        ),
     )
     d.step(
         r"The product $n \times v$ is perpendicular to $v_\perp$ and has the same length. The vectors $v_\perp$ and $n "

@@ -22,6 +22,7 @@ from symrot.checker.repair.insertions import exchanged_definitions, missing_matr
 from symrot.checker.repair.joined_pairs import joined_pairs, pair_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solutions
+from symrot.checker.repair.whole_edits import after_whole_edits
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
@@ -116,6 +117,8 @@ class _Search:
             repairs = self.proven(joined_pairs(numeric, changes), MOST_REPAIRS)
         if not repairs and not self.conditional:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
+        if not repairs and not self.conditional:
+            repairs = self.proven(after_whole_edits(numeric, changes), MOST_REPAIRS)
         nearest = min((cost for cost, _ in self.tautologies), default=MOST_COSTLY)
         repairs = sorted((r for r in repairs if r.cost <= nearest + AS_NEAR), key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, Path, text, walk
-from symrot.checker.latex.cursor import MATRIX_CALLS, TIME
+from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, text, walk
+from symrot.checker.latex.cursor import MATRIX_CALLS
 from symrot.checker.repair.edits import COST, Edit
 from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 
@@ -44,11 +44,14 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses."""
+    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses.
 
-    def __init__(self, claim: Claim) -> None:
+    It evaluates at most ``most_pieces`` pieces of trees; then every test fails.
+    """
+
+    def __init__(self, claim: Claim, most_pieces: int = MOST_PIECES) -> None:
         assert claim.relation is not None
-        self.claim = claim
+        self.claim, self.most_pieces = claim, most_pieces
         _, self.left, self.right = claim.relation
         self.definitions = dict(claim.define)
         trees = [self.left, self.right, *self.definitions.values()]
@@ -64,7 +67,7 @@ class NumericFilter:
         self.points = points(self.symbols, self.functions, self.definitions, hypotheses, own_pieces, most=most)
         values = claim.definitions.values
         self.matrix_names = {name for name, value in values.items() if getattr(value, "is_Matrix", False)}
-        self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
+        self.moving = any(is_derivative(node) for tree in trees for _, node in walk(tree))
         self.used = self._used_definitions()
         self.dependent: dict[str, set[int | str]] = {}
         self.wrong = self._wrong_entries()
@@ -158,7 +161,7 @@ class NumericFilter:
     # -- values -----------------------------------------------------------------------------------------------------
 
     def affordable(self) -> bool:
-        return sum(point.spent[0] for point in self.points) < MOST_PIECES
+        return sum(point.spent[0] for point in self.points) < self.most_pieces
 
     def sides(self, point: Point, changes: Sequence[Change]) -> tuple[Any, Any]:
         left, right = self.left, self.right

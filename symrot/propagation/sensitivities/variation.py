@@ -23,6 +23,7 @@ from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor,
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, node_from_json, node_to_json
+from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
@@ -56,7 +57,6 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
 RATES = 3  # the first states are angular velocities
 ORDER = 20
 AT_ONCE = 6  # columns in one library: many more would take a compiler too long

@@ -16,7 +16,7 @@ from symrot.dynamics.structure import FormulaTorque, TorqueStructure, TorqueSwit
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.switches import Switch, between_sides, chosen, hold, on_line, placed
+from symrot.formula.switches import STATES, Switch, between_sides, chosen, hold, on_line, placed
 from symrot.formula.tree import Node, evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
@@ -26,7 +26,6 @@ from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["SwitchedSystem", "is_continuous"]
 
-STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of labels of functions that do not jump
 
 
@@ -163,7 +162,7 @@ class SwitchedSystem:
                 modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero
             modes[switch.mode] = chosen_modes.get(switch.mode, modes[switch.mode])
             values[switch.mode] = float(modes[switch.mode])
-            if guard == 0.0 and switch.kind == "sign" and names(switch.guard) & STATES:
+            if guard == 0.0 and switch.kind == "sign" and not names(switch.guard).isdisjoint(STATES):
                 undecided.add(switch.mode)
         return modes, undecided
 
