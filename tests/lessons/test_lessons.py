@@ -25,6 +25,8 @@ from symrot.scene.file import shipped_names
 from symrot.scene.scene import load_scene
 from symrot.workshop.derivation_pages import illustrated
 
+pytestmark = pytest.mark.first  # the lessons need the derivations that the tests of the catalogue have made
+
 
 def test_every_derivation_has_a_lesson():
     assert list(LESSONS) == list(names())
