@@ -50,7 +50,8 @@ class Body:
     ----------
     kind : Kind
     motion : str
-        ``"rolls"``, ``"rolls down a slope"``, ``"rolls from a height"``, ``"general"``; otherwise empty.
+        ``"rolls"``, ``"rolls down a slope"``, ``"rolls from a height"``, or ``"general"`` if the words say "in general
+        motion", without a fixed axis; empty if the words state no motion.
     letters : mapping
         Symbol in the derived formulas -> letter in the claim, such as ``{"R": "r"}`` for "of radius r".
     place : str
