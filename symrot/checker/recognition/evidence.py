@@ -74,7 +74,9 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
      ("kinetic energy", "torque", "rotation matrix", "period", "energy of", "Jacobian")),
     (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
+    (r"W", ("work", "potential", "energy")),
     (r"V|U|E_?p|PE", ("potential", "work")),
+    (r"d[LHh](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
     (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
@@ -201,7 +203,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
         return False  # the formula may be a more general one
-    if is_general and not (near.code == "wrong_symbol" and count >= MANY_LETTERS):
+    angles = _only_in_sines(named.formula) - names_in(near.tree)  # as theta in the factor sin(theta)
+    has_own_angle = near.code == "factor" and words is not None and letters <= names_in(near.tree) | angles
+    if is_general and not ((near.code == "wrong_symbol" or has_own_angle) and count >= MANY_LETTERS):
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
@@ -212,7 +216,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
-    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near):
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry(named, near):
         return True
     if words is None:
         return max(count, near.array_letters) >= MANY_LETTERS
@@ -249,6 +253,26 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
         and bool(rest)
         and place[2] in COMPONENTS.get(word, "")
     )
+
+
+def _is_entry(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is for an entry of a rotation matrix, such as R_12, and ``near`` is for this entry."""
+    entry = re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
+    own = re.fullmatch(r"[RCAQ]_?([1-3]{2})", named.name)
+    return entry is not None and own is not None and own[1] in (entry[1], entry[1][::-1])
+
+
+def _only_in_sines(formula: Node) -> set[str]:
+    """Return the letters that a formula has only inside sines and cosines."""
+    inside = {name for _, node in walk(formula) if node.kind == "call" and node.value in ("sin", "cos")
+              for name in names_in(node)}  # fmt: skip
+    return inside - _outside_of_sines(formula)
+
+
+def _outside_of_sines(node: Node) -> set[str]:
+    if node.kind == "call" and node.value in ("sin", "cos"):
+        return set()
+    return names_in(node) if not node.args else {name for child in node.args for name in _outside_of_sines(child)}
 
 
 def has_terms(formula: Node) -> bool:
