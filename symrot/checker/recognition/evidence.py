@@ -28,7 +28,9 @@ __all__ = [
     "has_terms",
     "has_word",
     "is_evident",
+    "is_in_usual_sequence",
     "is_of_body",
+    "is_unusual",
     "keeps_places",
     "misfit_of",
     "names_in",
@@ -322,6 +324,17 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
     return not are_roll_pitch_yaw(sequence[1], places)
 
 
+def is_unusual(known: Identification) -> bool:
+    """Return whether a claim is a known formula only if components such as omega_1 or p are in the space frame.
+
+    Books number the components in the body, or call them p, q and r there.
+    """
+    components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
+    return "space frame" in known.name and any(
+        re.fullmatch(r"(omega|w)_?[1-3]|[pqr]", plain_name(new)) for new in components
+    )
+
+
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
     """Return whether the names in a claim do not contradict the known formula to which the claim is compared.
 
@@ -444,6 +457,11 @@ def rarity_of(known: Identification) -> tuple[bool, int]:
     sequences that many books use.
     """
     return bool(known.how), _rank_of_sequence(known.name)
+
+
+def is_in_usual_sequence(known: str) -> bool:
+    """Return whether a known formula's name has no Euler sequence, or one that books use often."""
+    return _rank_of_sequence(known) < len(USUAL_SEQUENCES)
 
 
 def _rank_of_sequence(known: str) -> int:

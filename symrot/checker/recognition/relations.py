@@ -40,7 +40,16 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import quaternion, rotation_vector
 from symrot.kinematics.euler import rate_jacobian
 
-__all__ = ["OTHERS", "Relation", "new_symbol", "primitive", "relations", "solved", "terms_expanded", "without_common_powers"]
+__all__ = [
+    "OTHERS",
+    "Relation",
+    "new_symbol",
+    "primitive",
+    "relations",
+    "solved",
+    "terms_expanded",
+    "without_common_powers",
+]
 
 PHI, THETA, PSI = symbols.angles
 DPHI, DTHETA, DPSI = symbols.angle_rates
@@ -195,7 +204,9 @@ def _one_axis() -> Iterator[Relation]:
     yield Relation("rotation about one axis by its angular momentum", PLANE, by_momentum, {ENERGY: "kinetic energy of"})
     (spin,) = solve(energy.diff(SPIN) - symbols.H, SPIN)
     without_spin = ENERGY - energy.subs(SPIN, spin)
-    yield Relation("rotation about one axis by its angular momentum", PLANE, without_spin, {ENERGY: "kinetic energy of"})
+    yield Relation(
+        "rotation about one axis by its angular momentum", PLANE, without_spin, {ENERGY: "kinetic energy of"}
+    )
     gain = energy.subs(SPIN, AFTER) - energy.subs(SPIN, BEFORE)
     yield Relation("work and kinetic energy of rotation", PLANE, WORK - gain, {WORK: "work by"})
     yield Relation("impulse and angular momentum about one axis", PLANE, C * BEFORE + TORQUE * TIME - C * AFTER,
